@@ -29,6 +29,12 @@ def test_the_poses_and_corners_are_those_of_the_tool():
     assert (np.abs(first.astype(int) - course.photos()[0]) <= 1).all()
 
 
+def test_the_corners_of_chapter_0_are_near_its_true_ones():
+    """That they are its own is held there: see tests/undone/00.toml."""
+    board, camera, m = course.board(), course.camera(), course.first_corners()
+    assert calibrate(board.points, m, camera.size).rms == pytest.approx(0.0142, abs=5e-5)
+
+
 def test_measured_corners_are_what_the_finder_measures():
     for i in (0, 7):
         found = find_corners(course.photos()[i], course.board())

@@ -8,6 +8,7 @@ import base64
 import io
 import json
 import re
+from functools import lru_cache
 from html import escape
 from pathlib import Path
 
@@ -35,6 +36,7 @@ PARTS = {
     "more_exercises": ("conic", {"a": 0.0, "b": 1.5}, (414, 44, 390)),
 }
 _ROW = re.compile(r"^\| (\S+) \| \[(.+?)\]\(notebooks/(\w+)\.ipynb\) \| (.+?) \|$", re.M)
+_PART = re.compile(r"^\|(\w+)\|\[.+?\]\((\w+)\.ipynb\)", re.M)
 _IMAGE = re.compile(r'src="data:image/(?:png|webp);base64,([^"]+)"')
 
 # The most frequent mistake of all, as a student writes it.
@@ -55,7 +57,7 @@ def front_page(live: bool, lite: bool) -> str:
         "BUTTONS": buttons(live, lite),
         "WHOM": whom(readme),
         "EXPLORATION": exploration(live),
-        "INVITATION": "Pull the tower." if live else "A tower that is not there.",
+        "INVITATION": "Pull the tower, and the camera." if live else "A tower that is not there.",
         "CARDS": "\n".join(card(*row) for row in _ROW.findall(readme)),
         "WRONG": WRONG,
         "REPLY": escape(check("camera_centre", camera_centre).message),
@@ -124,12 +126,21 @@ def exploration(live: bool) -> str:
 def card(number: str, title: str, name: str, question: str) -> str:
     """Write a chapter's card: its richest picture, its name and its question."""
     label = title if number == "★" else f"{int(number)} · {title}"
+    part = parts().get(name, "build, read, use")
     question = re.sub(r"\*(.+?)\*", r"<em>\1</em>", escape(question))
     return (
         f'<li><a href="notebooks/{name}.html"><img src="{FOLDER}/card-{name}.jpg" alt="" '
         f'width="{CARD[0] // 2}" height="{CARD[1] // 2}" loading="lazy">'
-        f"<strong>{escape(label)}</strong> <span>{question}</span></a></li>"
+        f"<small>{part}</small> <strong>{escape(label)}</strong> <span>{question}</span></a></li>"
     )
+
+
+@lru_cache(maxsize=1)
+def parts() -> dict[str, str]:
+    """Return whether a chapter builds, reads or uses the camera, as the table of chapter 0 says."""
+    first = json.loads((ROOT / "notebooks" / "00_start_here.ipynb").read_text(encoding="utf-8"))
+    said = "\n".join("".join(cell["source"]) for cell in first["cells"])
+    return {name: part for part, name in _PART.findall(said)}
 
 
 def put_pictures(made: Path) -> None:

@@ -71,6 +71,17 @@ def views() -> dict[str, bytes]:
     return files
 
 
+def first_corners() -> dict[str, bytes]:
+    """The corners of chapter 0's twelve photographs, by its own cells."""
+    chapter = json.loads((ROOT / "notebooks" / "00_start_here.ipynb").read_text(encoding="utf-8"))
+    names: dict[str, Any] = {}
+    for cell in [c for c in chapter["cells"] if c["cell_type"] == "code"]:
+        if "corners" not in names:
+            exec("".join(cell["source"]), names)
+    about = "corners in px that find_corners finds in the twelve photographs of chapter 0"
+    return {"first_corners.json": text({"about": about, "corners": rounded(names["corners"], 3)})}
+
+
 def meshes() -> dict[str, bytes]:
     """The rooms and rails of chapters 1 and 2, as GLB files that any 3-D viewer opens."""
     files = {}
@@ -125,7 +136,7 @@ def main() -> int:
     parser.add_argument("--check", action="store_true", help="write nothing")
     parser.add_argument("--photographs", type=Path, help="folder with left01.jpg … right14.jpg")
     arguments = parser.parse_args()
-    files = views() | meshes() | personal()
+    files = views() | first_corners() | meshes() | personal()
     if arguments.photographs:
         files |= real_corners(arguments.photographs)
     if not arguments.check:

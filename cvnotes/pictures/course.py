@@ -110,6 +110,17 @@ def measured_corners() -> Array:
     return np.array(_json("views.json")["measured_corners"])
 
 
+def first_corners() -> Array:
+    """Return the corners found in the twelve photographs in a room of chapter 0, (12, 54, 2), px.
+
+    Examples
+    --------
+    >>> first_corners().shape
+    (12, 54, 2)
+    """
+    return np.array(_json("first_corners.json")["corners"])
+
+
 def real_corners() -> RealCorners:
     """Return the corners that `find_corners` finds in 13 real pairs of photographs.
 

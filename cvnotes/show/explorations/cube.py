@@ -1,4 +1,4 @@
-"""Explore a calibrated camera: a tower stands on a photographed board, wherever it is pulled."""
+"""Explore a calibrated camera: a tower stands on a photographed board, and with a wrong one not."""
 
 from functools import lru_cache
 from typing import NamedTuple
@@ -8,99 +8,135 @@ from PIL import Image, ImageChops, ImageDraw, ImageFilter
 
 from cvnotes.base import Array
 from cvnotes.calibration import pose_from_view
-from cvnotes.camera import Camera, Lens, intrinsics, look_at
+from cvnotes.camera import Camera, Lens, intrinsics, inverse, look_at, move, xy_from_px
 from cvnotes.pictures import course, desk, render_scene
 from cvnotes.pictures.scenes import DESK_LIGHT
+from cvnotes.projective import to_homogeneous
+from cvnotes.show.explorations.boards import draw_sheet, paper_and_squares, pinhole
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Drawn, Panel, Paper
-from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, hexed
+from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, hexed, mixed
 from cvnotes.targets import refine_subpixel
 
 _BOARD = course.board()
 _SQUARE, _SIDE = _BOARD.square, 2 * _BOARD.square  # mm
+_ALPHA, _PANE = 1150, 130  # px, the focal length; mm, how far before the camera its pane is drawn
 _CAMERA = Camera(
-    intrinsics(1150, 1150, 639.5, 479.5),
+    intrinsics(_ALPHA, _ALPHA, 639.5, 479.5),
     look_at([165, 400, -300], [95, 70, -22]),
     lens=Lens(k=(-0.25, 0.1)),
     size=(1280, 960),
 )
+_BESIDE = Camera(  # the same from the side, from so far that it is nearly a drawing
+    intrinsics(3500, 3500, 399.5, 404.5),
+    look_at([2500, 500, -500], [110, 196, -145], up=(0, 0, -1)),
+    size=(800, 810),
+)
+_GLASS, _EDGE = "#E3F1FB", mixed("#FFFFFF", CAMERA, 0.8)
+_BORDER, _SQUARES = paper_and_squares(_BOARD)
 _LIGHT = np.array(DESK_LIGHT) / np.linalg.norm(DESK_LIGHT)
 _WINDOW = "#4A2E18"
 _PAINT = np.array([[246, 150, 60], [236, 134, 46]])  # two tints of the tower's tiles
 _EDGES = [(i, (i + 1) % 4 + i // 4 * 4) for i in range(8)] + [(i, i + 4) for i in range(4)]
+_SIDES = [[i + 3, i + 4, i, i - 1] for i in range(1, 4)]
+_FACES = np.array([[4, 5, 6, 7], [7, 4, 0, 3], *_SIDES])  # the roof, and the sides
 _SHADED, _SOFT = 0.42, 6  # what a shadow leaves of the light; px of its edge
 _CLOSE, _NEAR = 210, 14  # of 255, how dark it is under a foot; px that this reaches
 
 
-class _Found(NamedTuple):
-    """The photograph, lit and in the shade; cameras with the pose found from it: no lens, lens."""
+class _Photo(NamedTuple):
+    """A photograph of the desk, lit and in the shade."""
 
-    photo: Image.Image
+    lit: Image.Image
     dark: Image.Image
-    cameras: tuple[Camera, Camera]
 
 
-@lru_cache(maxsize=1)
-def _found() -> _Found:
-    photo = render_scene(desk(_BOARD), _CAMERA)
-    # On a page there is no OpenCV, and so no finder of boards: whole pixels are its start.
-    m = refine_subpixel(photo.mean(axis=2), _CAMERA.project(_BOARD.points).round())
-    bare = (
-        Camera(_CAMERA.A, size=_CAMERA.size),
-        Camera(_CAMERA.A, lens=_CAMERA.lens, size=_CAMERA.size),
-    )
-    without, with_lens = (one.moved(pose_from_view(one, _BOARD.points, m)) for one in bare)
-    dark = Image.fromarray((photo * _SHADED).astype(np.uint8))
-    return _Found(Image.fromarray(photo), dark, (without, with_lens))
+@lru_cache(maxsize=2)
+def photo(aside: bool = False) -> _Photo:
+    """Photograph the desk, by the camera or from the side."""
+    lit = render_scene(desk(_BOARD), _BESIDE if aside else _CAMERA)
+    return _Photo(Image.fromarray(lit), Image.fromarray((lit * _SHADED).astype(np.uint8)))
+
+
+@lru_cache(maxsize=2)
+def found(lens: bool) -> Camera:
+    """Return the camera with the pose that is found from its photograph, with or without its lens.
+
+    On a page there is no OpenCV, and so no finder of boards: whole pixels are its start.
+    """
+    grey = np.asarray(photo().lit).mean(axis=2)
+    m = refine_subpixel(grey, _CAMERA.project(_BOARD.points).round())
+    bare = Camera(_CAMERA.A, lens=_CAMERA.lens if lens else Lens(), size=_CAMERA.size)
+    return bare.moved(pose_from_view(bare, _BOARD.points, m))
+
+
+def believed(values: Values) -> Camera:
+    """Return the camera that draws: as it is found, or pulled along its axis, or longer."""
+    right = found(bool(values["lens"]))
+    G, k = right.G.copy(), values["alpha"] / _ALPHA
+    G[2, 3] += values["away"]
+    A = right.A * [[k, 1, 1], [1, k, 1], [1, 1, 1]]
+    return Camera(A, G, lens=right.lens, size=right.size)
 
 
 def cube_model() -> Model:
     """Make the model of a desk with a board, and a tower on it."""
     columns, rows = _BOARD.corners
     settings = (
-        Setting("x", "x (mm)", -50, columns * _SQUARE + 25, 1, 100, "where the tower stands"),
-        Setting("y", "y (mm)", -50, rows * _SQUARE + 25, 1, 50, "where the tower stands"),
+        Setting("x", "x (mm)", -50, columns * _SQUARE + 25, 1, 50, "where the tower stands"),
+        Setting("y", "y (mm)", -50, rows * _SQUARE + 25, 1, 25, "where the tower stands"),
         Setting("height", "height (mm)", 20, 150, 1, 100, "how high the tower is"),
-        Setting("turn", "turn (°)", -45, 45, 1, 0, "how far it is turned on the board"),
+        Setting("away", "camera (mm)", -200, 60, 1, 0, "how much too far away the camera is"),
+        Setting("alpha", "α (px)", 600, 1700, 10, _ALPHA, "the focal length"),
         Setting("lens", "with the lens", 0, 1, 1, 1, "whether the camera's lens is used"),
     )
+    turn = Setting("turn", "turn (°)", -45, 45, 1, 0, "how far it is turned on the board")
     about = (
         "A photograph of a desk with a board, and a tower that stands on the board, drawn by the "
-        "camera that was found from the board's corners. Beside it the board from above."
+        "camera that was found from the board's corners. Beside it desk, tower and camera from "
+        "the side, with lines of sight to foot and top through the pane of its picture."
     )
 
     def draw(paper: Paper, values: Values) -> Drawing:
-        found = _found()
-        camera = found.cameras[int(values["lens"])]
+        camera = believed(values)
         foot, h = np.array([values["x"], values["y"]]), values["height"]
-        base = foot + _turned(values["turn"]) * _SIDE / 2
-        panel = paper.picture_panel((540, 405), _CAMERA.size, "a tower: pull its foot or its top")
-        panel.image(_in_the_shade(found, camera, base, h))
+        base = foot + _turned(values.get("turn", 0)) * _SIDE / 2
+        panel = paper.picture_panel((540, 405), _CAMERA.size, "the photograph: pull the tower")
+        panel.image(_in_the_shade(photo(), camera, base, h))
         corners = _draw_tower(panel, camera, base, h)
-        if not values["lens"]:
+        off = np.linalg.norm(camera.project(corners) - _CAMERA.project(corners), axis=1)
+        if off.max() > 1:
             for i, j in _EDGES:  # where it belongs
                 edge = corners[i] + np.linspace(0, 1, 9)[:, None] * (corners[j] - corners[i])
                 panel.line(_CAMERA.project(edge), IDEAL, 1.2, dash=4)
-        at = camera.project([*foot, 0])
-        panel.grip("foot", "the foot of the tower", at, 5)
+        panel.grip("foot", "the foot of the tower", camera.project([*foot, 0]), 5)
         panel.grip("top", "the top of the tower", camera.project([*foot, -h]), 12)
-        plan = paper.panel((400, 405), (-155, 349), (-88, 422), "the same from above")
-        _draw_plan(plan, base, h)
-        off = np.linalg.norm(camera.project(corners) - _CAMERA.project(corners), axis=1)
-        return Drawing(paper.join((panel, plan)), _sentence(foot, at, h, off, bool(values["lens"])))
+        title = "from the side: pull the camera, or its picture"
+        aside = paper.picture_panel((400, 405), _BESIDE.size, title)
+        aside.image(_in_the_shade(photo(aside=True), _BESIDE, base, h))
+        _draw_tower(aside, _BESIDE, base, h)
+        _draw_camera(aside, camera, corners)
+        return Drawing(paper.join((panel, aside)), _sentence(values, off))
 
     def carried(values: Values, at: Array) -> Values:
-        x, y = on_board(_found().cameras[int(values["lens"])], at)
+        x, y = on_board(believed(values), at)
         return {"x": float(x), "y": float(y)}
 
     def stretched(values: Values, at: Array) -> Values:
         """Make the tower as high as the place over its foot that is level with the hand."""
         h = np.arange(20, 151.0)
         over = np.column_stack([np.full_like(h, values["x"]), np.full_like(h, values["y"]), -h])
-        seen = _found().cameras[int(values["lens"])].project(over)
+        seen = believed(values).project(over)
         return {"height": float(h[np.abs(seen[:, 1] - at[1]).argmin()])}
 
-    return Model("cube", about, settings, draw, {"foot": carried, "top": stretched})
+    def moved(_: Values, at: Array) -> Values:
+        return {"away": -_along_the_axis(at)}
+
+    def longer(values: Values, at: Array) -> Values:
+        return {"alpha": _ALPHA * (_along_the_axis(at) + values["away"]) / _PANE}
+
+    drags = {"foot": carried, "top": stretched, "camera": moved, "pane": longer}
+    return Model("cube", about, settings, draw, drags, (turn,))
 
 
 def on_board(camera: Camera, m: Array) -> Array:
@@ -108,6 +144,13 @@ def on_board(camera: Camera, m: Array) -> Array:
     H = camera.G[:3, [0, 1, 3]]
     x, y, w = np.linalg.solve(H, [*camera.ideal(m), 1])
     return np.array([x / w, y / w])
+
+
+def _along_the_axis(at: Array) -> float:
+    """Return how far (mm) from the true camera a hand is, of the places of its axis the nearest."""
+    far = np.arange(-200, 400.0)
+    seen = _BESIDE.project(_CAMERA.centre + far[:, None] * _CAMERA.R[2])
+    return float(far[np.linalg.norm(seen - at, axis=1).argmin()])
 
 
 def _turned(angle: float) -> Array:
@@ -123,10 +166,10 @@ def _shadow(base: Array, h: float) -> Array:
     return np.array([*swept, fallen])
 
 
-def _in_the_shade(found: _Found, camera: Camera, base: Array, h: float) -> Drawn:
+def _in_the_shade(of: _Photo, camera: Camera, base: Array, h: float) -> Drawn:
     """Darken what lies in the tower's shadow, and, softer, what lies close round its foot."""
     seen = camera.project(np.insert(_shadow(base, h), 2, 0, axis=-1))
-    w, height = _CAMERA.size
+    w, height = camera.size
     mask = Image.new("L", (w // 2, height // 2))
     for corners in seen / 2:
         ImageDraw.Draw(mask).polygon(corners.ravel().tolist(), 255)
@@ -134,15 +177,14 @@ def _in_the_shade(found: _Found, camera: Camera, base: Array, h: float) -> Drawn
     foot, round_it = camera.project(np.insert(base, 2, 0, axis=-1)) / 2, Image.new("L", mask.size)
     ImageDraw.Draw(round_it).polygon(foot.ravel().tolist(), _CLOSE)
     round_it = ImageChops.lighter(soft, round_it.filter(ImageFilter.GaussianBlur(_NEAR / 2)))
-    return np.asarray(Image.composite(found.dark, found.photo, round_it.resize(_CAMERA.size)))
+    return np.asarray(Image.composite(of.dark, of.lit, round_it.resize(camera.size)))
 
 
 def _draw_tower(panel: Panel, camera: Camera, base: Array, h: float) -> Array:
     """Draw the tower's faces that are seen, in tiles; returns its corners (8, 3)."""
-    low, high = np.insert(base, 2, 0, axis=1), np.insert(base, 2, -h, axis=1)
-    faces = [high, *(np.array([high[i - 1], high[i], low[i], low[i - 1]]) for i in range(4))]
-    middle = (low[0] + high[2]) / 2
-    for a, b, c, d in faces:
+    corners = np.concatenate([np.insert(base, 2, z, axis=1) for z in (0, -h)])
+    middle = (corners[0] + corners[6]) / 2
+    for a, b, c, d in corners[_FACES]:
         outside = (a + c) / 2 - middle
         outside = outside / np.linalg.norm(outside)
         if outside @ (camera.centre - a) <= 0:
@@ -158,36 +200,55 @@ def _draw_tower(panel: Panel, camera: Camera, base: Array, h: float) -> Array:
                 if outside[2] > -0.5:  # not on the roof
                     middle_of = tile.mean(axis=0)
                     panel.polygons((middle_of + 0.55 * (tile - middle_of))[None], _WINDOW)
-    return np.concatenate([low, high])
+    return corners
 
 
-def _draw_plan(panel: Panel, base: Array, h: float) -> None:
-    columns, rows = _BOARD.corners
-    rest = np.array([[0, 0], [1, 0], [1, 1], [0, 1]])
-    panel.polygons(((rest - 0.5) * 2000)[None], "#E4C7A3")
-    panel.polygons(((rest * [columns + 3, rows + 3] - 2) * _SQUARE)[None], "#FFFFFF")
-    panel.polygons(_shadow(base, h), "#8C8277")
-    dark = [(i, j) for i in range(-1, columns) for j in range(-1, rows) if (i + j) % 2 == 0]
-    panel.polygons((np.array(dark)[:, None] + rest) * _SQUARE, "#333333")
-    eye = _CAMERA.centre[:2]
-    panel.line([eye, base.mean(axis=0)], ESTIMATED, 0.9, dash=5)
-    panel.polygons(base[None], ESTIMATED)
-    panel.line(base[[0, 1, 2, 3, 0]], "#FFFFFF", 1.5)
-    panel.mark(eye, "camera", 10, tuple(base.mean(axis=0) - eye))
-    panel.text(eye - [14, 0], "camera", CAMERA, anchor="rm", size=12)
+def _draw_camera(panel: Panel, camera: Camera, tower: Array) -> None:
+    """Draw a camera, its picture with board and tower (8, 3), and its lines of sight to both ends.
+
+    The board is in the picture where it was photographed, the tower where it is drawn.
+    """
+    back, C = inverse(camera.G), camera.centre
+    w, h = camera.size
+
+    def on_pane(m: Array) -> Array:
+        plane = to_homogeneous(xy_from_px(camera.A, m))
+        return _BESIDE.project(move(back, _PANE * camera.A[0, 0] / _ALPHA * plane))
+
+    centre, right = _BESIDE.project(np.array([C, _CAMERA.centre]))
+    x, y = (_BESIDE.project(C + 50 * camera.R[2]) - centre).tolist()
+    if np.linalg.norm(centre - right) > 5:  # the way back
+        panel.mark(right, "camera", 8, (x, y))
+        panel.text(right + [24, -4], "here it stood", CAMERA)
+    *pane, top = on_pane(np.array([[0, 0], [w, 0], [w, h], [0, h], [w / 2, 0]]) - 0.5)
+    sides = np.stack([np.broadcast_to(centre, (4, 2)), pane, np.roll(pane, -1, axis=0)], axis=1)
+    panel.polygons([np.array(pane)], _GLASS)
+    photographed, drawn = (pinhole(one).moved(one.G).project for one in (_CAMERA, camera))
+    draw_sheet(panel, *(on_pane(photographed(part)) for part in (_BORDER, _SQUARES)))
+    panel.polygons(on_pane(drawn(tower))[_FACES], ESTIMATED)
+    panel.segments(sides[:, [[0, 1], [1, 2]]].reshape(-1, 2, 2), _EDGE, 1.4)
+    ends = np.stack([tower[:4].mean(axis=0), tower[4:].mean(axis=0)])
+    for end in _BESIDE.project(ends):
+        panel.line([centre, end], ESTIMATED, 1.2, dash=6)
+    panel.mark(on_pane(drawn(ends)), "estimated", 4)
+    panel.mark(centre, "camera", 13, (x, y))
+    panel.grip("camera", "the camera, nearer or farther", centre, 4)
+    panel.grip("pane", "its picture: a longer or a shorter focal length", top, 4)
 
 
-def _sentence(foot: Array, at: Array, h: float, off: Array, lens: bool) -> str:
-    (x, y), (u, v) = foot, at
-    said = (
-        f"A tower {h:.0f} mm high at ({x:.0f}, {y:.0f}) mm: the middle of its foot would "
-        f"be seen at ({u:.0f}, {v:.0f}) px. "
-    )
-    if lens:
-        return (
-            f"{said}Its corners are within {off.max():.2f} px of where the true camera sees them."
-        )
+def _sentence(values: Values, off: Array) -> str:
+    away, alpha = values["away"], values["alpha"]
+    wrong = []
+    if away:
+        wrong += [f"{abs(away):.0f} mm too {'near' if away < 0 else 'far'}"]
+    if alpha != _ALPHA:
+        wrong += [f"with a focal length of {alpha:.0f} px in place of {_ALPHA}"]
+    if not values["lens"]:
+        wrong += ["without its lens"]
+    where = f"A tower {values['height']:.0f} mm high at ({values['x']:.0f}, {values['y']:.0f}) mm"
+    if not wrong:
+        return f"{where}, by the right camera: no corner is more than {off.max():.2f} px off."
     return (
-        f"{said}Without the lens, and with the best pose that is left, it is up to "
-        f"{off[:4].max():.1f} px off at its foot and {off[4:].max():.1f} px at its top."
+        f"{where}, by a camera {' and '.join(wrong)}: up to {off[:4].max():.1f} px off at its "
+        f"foot, and {off[4:].max():.1f} px at its top."
     )

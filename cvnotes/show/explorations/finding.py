@@ -29,10 +29,11 @@ _FRAMES, _CURVE = (456, 304), (394, 304)
 
 
 class Finding:
-    """The course's twelve photographs, and the camera after each Gauss–Newton step."""
+    """Corners of twelve photographs, the course's, and the camera after each Gauss–Newton step."""
 
-    def __init__(self) -> None:
-        self.size, self.m = course.camera().size, course.measured_corners()
+    def __init__(self, corners: Array | None = None) -> None:
+        self.m = course.measured_corners() if corners is None else corners
+        self.size = course.camera().size
         W, m = course.board().points, self.m
         H = dlt(W[:, :2], m)
         A = intrinsics_from_b(solve_b(constraints(H)))

@@ -9,7 +9,7 @@ from cvnotes.base import Array
 from cvnotes.camera import Camera, Lens, intrinsics
 from cvnotes.camera.lens import radial_factor
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
-from cvnotes.show.explorations.paper import Drawn, Panel, Paper
+from cvnotes.show.explorations.paper import Drawn, Panel, Paper, Range
 from cvnotes.show.explorations.strokes import circle
 from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, LENS, MUTED
 from cvnotes.targets import Chessboard
@@ -72,7 +72,7 @@ def _draw(camera: Camera, paper: Paper, values: Values) -> Drawing:
     x = reach * _SIZE[0] / _SIZE[1]
     title = "a room through the lens: pull the edge's end"
     grid = paper.panel(_SIZE, (-x, x), (-reach, reach), title)
-    grid.image(bent_room(lens, (x, reach), _SIZE, paper.sharpness, 1))
+    grid.image(bent_room(lens, grid.x, grid.y, _SIZE, paper.sharpness, 1))
     _draw_edge(grid, lens)
     draw_fold(grid, lens)
     curve = paper.panel(_SIZE, (0, _RADIUS), (1.2, -0.2), "observed radius, over the ideal one")
@@ -103,12 +103,13 @@ def _room() -> Drawn:
 @lru_cache(maxsize=4)  # it stays while something else is pulled
 def bent_room(
     lens: Lens,
-    half: tuple[float, float],
+    x: Range,
+    y: Range,
     panel: tuple[int, int],
     sharpness: int,
     part: float = 0.75,
 ) -> Drawn:
-    """Show the room through a lens, half as wide and as high as given from the middle on.
+    """Show the room through a lens, from x to x and from y to y of the plane z = 1.
 
     It is light, so that a grid can lie over it: only a `part` of its ink is left. A little beyond
     the fold it goes on: that is for `draw_fold` to cover.
@@ -117,8 +118,8 @@ def bent_room(
     h, w = room.shape[:2]
     size = sharpness * panel[0], sharpness * panel[1]
     columns, rows = (
-        reach * ((2 * np.arange(n) + 1) / n - 1)
-        for reach, n in zip(half, np.array(panel) // _COARSE, strict=True)
+        low + (high - low) * (np.arange(n) + 0.5) / n
+        for (low, high), n in zip((x, y), np.array(panel) // _COARSE, strict=True)
     )
     ideal = _continued(lens.undistort(np.stack(np.meshgrid(columns, rows), axis=-1)))
     sides = (_DETAIL * ideal + np.array([w - 1, h - 1]) / 2).astype(np.float32)

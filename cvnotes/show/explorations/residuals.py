@@ -6,6 +6,7 @@ import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.calibration.refinement import solve_by_schur, take_step
+from cvnotes.pictures import course
 from cvnotes.show.explorations.finding import Finding, alike, rms
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import GRID, Panel, Paper
@@ -17,7 +18,7 @@ _SURE = 1e12  # how much more one wish about k1 weighs than all pictures
 
 
 def residuals_model() -> Model:
-    """Make the model of all residuals of the course's twelve photographs, for a given k1."""
+    """Make the model of all residuals of the first chapter's twelve photographs, for a given k1."""
     settings = (
         Setting("k1", "k₁", -0.4, 0.1, 0.01, 0, "the lens that is believed; the rest fits"),
     )
@@ -28,7 +29,9 @@ def residuals_model() -> Model:
     return Model("residuals", about, settings, _draw, {"k1": lambda _, at: {"k1": float(at[0])}})
 
 
-_finding = lru_cache(maxsize=1)(Finding)
+@lru_cache(maxsize=1)
+def _finding() -> Finding:
+    return Finding(course.first_corners())
 
 
 @lru_cache(maxsize=128)

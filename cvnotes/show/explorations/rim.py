@@ -61,7 +61,7 @@ def _other(lens: Lens, r: float, seen: float) -> float:
 def _seen(paper: Paper, lens: Lens, r: float, other: float) -> Panel:
     x = _HALF * _LENS[0] / _LENS[1]
     panel = paper.panel(_LENS, (-x, x), (-_HALF, _HALF), "what the polynomial makes of the disc")
-    panel.image(bent_room(lens, (x, _HALF), _LENS, paper.sharpness, 0.65))
+    panel.image(bent_room(lens, panel.x, panel.y, _LENS, paper.sharpness, 0.65))
     end, folds = min(r, lens.max_radius), r > lens.max_radius
     _disc(panel, lens, (0, float(np.nan_to_num(other)) if folds else r), _BLUE, not folds)
     if folds:
@@ -99,7 +99,7 @@ def _disc(
 def _plane(paper: Paper, lens: Lens, r: float) -> Panel:
     x = _SHOWN * _BESIDE[0] / _BESIDE[1]
     panel = paper.panel(_BESIDE, (-x, x), (-_SHOWN, _SHOWN), "plane z = 1: pull the plus")
-    panel.image(bent_room(Lens(), (x, _SHOWN), _BESIDE, paper.sharpness, 0.65))
+    panel.image(bent_room(Lens(), panel.x, panel.y, _BESIDE, paper.sharpness, 0.65))
     _disc(panel, Lens(), (0, r), _GREY, True)
     panel.line(r * circle(121), MUTED, 1.5)
     if lens.max_radius < r:

@@ -118,7 +118,7 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     _draw_stop(cut, stop)
     lens, x = lens_of(stop), _HALF * _ROOM[0] / _ROOM[1]
     room = paper.panel(_ROOM, (-x, x), (-_HALF, _HALF), "the picture, turned upright")
-    room.image(bent_room(lens, (x, _HALF), _ROOM, paper.sharpness, 1))
+    room.image(bent_room(lens, room.x, room.y, _ROOM, paper.sharpness, 1))
     edge = lens.distort(_EDGE[:, :2] / _EDGE[:, 2:])
     room.line(edge[[0, -1]], IDEAL, 1.5)
     room.line(edge, LENS, 3)
