@@ -32,7 +32,7 @@ _STORIES = (
     "rectification", "disparity", "depth", "cube", "conic", "seam", "swing",
     "frame", "ways", "meet", "residuals", "enlarged", "hinge", "horizon",
     "nails", "origin", "similar", "clicks", "zoom", "rim", "decentred",
-    "changes", "rail", "protractor", "asks", "divide", "stop",
+    "changes", "rail", "protractor", "asks", "divide", "stop", "parallel", "roll",
     "pixels", "rodrigues", "door",
 )  # fmt: skip
 __all__ = ["NAMES", "pull_points", "explore", "model"]
