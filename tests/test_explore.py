@@ -382,25 +382,8 @@ def test_rails_are_drawn_up_to_their_vanishing_point():
     assert count(picture[TITLE : round(v) - 2, : MARGIN + WIDTH], WORLD) == 0
 
 
-def test_the_dot_on_the_ring_stands_at_twice_the_angle_of_the_rails():
-    for heading in (-90, -60, 25, 40, 75):
-        picture = MODELS["projection"].picture(heading=heading)
-        twice = np.radians(2 * heading)
-        x, z = 3 * np.sin(twice), 3 + 3 * np.cos(twice)  # m: the camera is at twice ±90°
-        left = picture.shape[1] - MARGIN - 410 + (x + 8.9) / 17.8 * 410
-        top = TITLE + (12.6 - z) / 14.3 * 330
-        around = picture[round(top) - 7 : round(top) + 8, round(left) - 7 : round(left) + 8]
-        assert count(around, WORLD) > 40, heading  # hollow: what it lies upon stays in sight
-        assert count(around[4:-4, 4:-4], WORLD) < 25, heading
-
-
-def test_a_mark_pulled_through_the_camera_comes_out_on_its_other_side():
+def test_rails_pulled_beyond_a_right_angle_come_out_on_the_other_side():
     pulled = MODELS["projection"].dragged
-    assert [pulled("mark", at)["heading"] for at in ((3, 3), (0.3, 0.01), (-0.3, 0.01))] == [
-        45,
-        88,
-        -88,
-    ]
     assert [pulled("rails", at)["heading"] for at in ((9, -0.5), (-9, -0.5))] == [-87, 87]
 
 
@@ -1240,7 +1223,9 @@ def test_the_yellow_cell_is_where_the_camera_sees_it_and_as_far_as_the_map_says(
     assert (np.abs(seen.min(axis=0) - corners.min(axis=0)) < [11, 4]).all()
     assert (np.abs(seen.max(axis=0) - corners.max(axis=0)) < [11, 4]).all()
     said = numbers(drawing.sentence)
-    assert said[:2] == [round(away), 4]
+    *place, w = said[1:5]  # the quadruple, whose third number is 1
+    assert [said[0], said[3], said[5]] == [round(away), 1, 4]
+    assert np.array([*place, w]) / w == pytest.approx([x, 1.6, z, 1], rel=0.06, abs=1e-9)
     assert said[-1] == pytest.approx(corners[0, 1] - corners[2, 1], rel=0.06)
 
 
@@ -1271,7 +1256,8 @@ def test_a_cell_that_is_pulled_to_the_rim_or_into_the_sky_is_a_direction_of_the_
             assert pulled == {"part": 1, "turn": turn}
         drawing = model.drawing(**pulled)
         assert "is at infinity" in drawing.sentence
-        assert np.allclose(numbers(drawing.sentence), [u, v], atol=0.05)
+        told = numbers(drawing.sentence)
+        assert np.allclose(told, [way[0] / way[2], 0, 1, 0, u, v], atol=0.05)
         on_map, in_picture = (grip_of(drawing, name) for name in ("map", "picture"))
         assert np.allclose(on_map.at, way[[0, 2]], atol=1e-5)
         assert np.allclose(in_picture.at, [u, v], atol=1e-3)
@@ -3520,20 +3506,91 @@ def test_the_cameras_shadow_falls_where_the_rays_of_the_sun_end(azimuth, elevati
         assert ((other - picture)[at].sum() > 60) == dark, by
 
 
-def test_beside_the_camera_the_drawn_rays_stay_parallel(monkeypatch):
-    rays, line = [], Panel.line
+@pytest.fixture
+def lines(monkeypatch):
+    """Note each curve that is drawn: its title, its points, its colour and whether it is dashed."""
+    drawn, line = [], Panel.line
 
     def kept(panel, xy, colour, *rest, **how):
-        rays.extend([np.array(xy)] if colour == ESTIMATED and not how else [])
+        drawn.append((panel.title, np.array(xy), colour, bool(how)))
         line(panel, xy, colour, *rest, **how)
 
     monkeypatch.setattr(Panel, "line", kept)
+    return drawn
+
+
+@pytest.mark.parametrize(("azimuth", "elevation"), [(15, 2), (-165, 8), (15, 8), (-120, 3)])
+def test_four_poles_have_their_ray_also_when_the_tip_of_the_shadow_is_behind(
+    azimuth, elevation, lines
+):
+    sun = np.radians([azimuth, elevation])
+    d = np.array([np.sin(sun[0]), -np.tan(sun[1]), np.cos(sun[0])])
+    MODELS["shadows"].drawing(azimuth=azimuth, elevation=elevation)
+    rays = [xy for _, xy, ink, dashed in lines if ink == ESTIMATED and not dashed]
+    assert len(rays) == 4
+    for ray, z in zip(rays, (27, 52, 77, 102), strict=True):
+        a, b = ray[0], ray[-1]
+        for x, y, ahead in ([-4, -4.05, z], d):  # its pole's top, and the sun
+            at = 400 * np.array([x, y]) / ahead + [319.5, 239.5]
+            assert abs(np.linalg.det([b - a, at - a])) / np.linalg.norm(b - a) < 1e-6
+        top = 400 * np.array([-4, -4.05]) / z + [319.5, 239.5]
+        inside = (ray[0] >= -0.5).all() and (ray[0] <= [639.5, 479.5]).all()
+        # It ends in the shadow's tip, or leaves the picture: it never stops at the top.
+        tip = np.array([-4, -4.05, z]) - 6 / np.tan(sun[1]) * d / np.hypot(d[0], d[2])
+        assert np.linalg.norm(ray[0] - top) > 30
+        assert not inside or tip[2] > 0.2
+
+
+def test_beside_the_camera_the_drawn_rays_stay_parallel(lines):
     for azimuth, elevation in ((90, 20), (-90, 35)):
-        rays.clear()
+        lines.clear()
         MODELS["shadows"].drawing(azimuth=azimuth, elevation=elevation)
+        rays = [xy for _, xy, ink, dashed in lines if ink == ESTIMATED and not dashed]
         slopes = [(ray[-1] - ray[0])[1] / (ray[-1] - ray[0])[0] for ray in rays]
         assert len(slopes) == 4
         assert np.allclose(np.abs(slopes), np.tan(np.radians(elevation)), atol=1e-6)
+
+
+@pytest.mark.parametrize(("heading", "slope"), [(17, 6), (-30, -12), (0, 0), (60, 12), (90, 6)])
+def test_the_ray_is_parallel_to_the_rods_and_pierces_the_glass_where_their_pictures_meet(
+    heading, slope, lines
+):
+    drawing = MODELS["parallel"].drawing(heading=heading, slope=slope)
+    h, s = np.radians([heading, slope])
+    d = np.array([np.sin(h) * np.cos(s), -np.sin(s), np.cos(h) * np.cos(s)])
+    seen = [xy for title, xy, ink, _ in lines if (title, ink) == ("the picture", ESTIMATED)]
+    ways = np.array([xy[1] - xy[0] for xy in seen])
+    if heading == 90:
+        assert np.allclose(np.abs(ways[:, 1] / ways[:, 0]), np.tan(s) * 804 / 800, atol=1e-9)
+        assert "are parallel, too" in drawing.sentence
+    else:
+        end = np.array([800 * d[0], 804 * d[1]]) / d[2] + [325, 238]
+        off = [np.linalg.det([end - xy[0], way]) for xy, way in zip(seen, ways, strict=True)]
+        assert np.abs(off / np.linalg.norm(ways, axis=1)).max() < 1e-6
+        assert numbers(drawing.sentence)[3:] == [round(x) for x in end.tolist()]
+    there = [(xy[-1] - xy[0], ink) for title, xy, ink, _ in lines if title.startswith("in space")]
+    rods, (ray,) = (
+        [way for way, colour in there if colour in inks and np.linalg.norm(way) > least]
+        for inks, least in (({WORLD, mixed(WORLD, "#FFFFFF", 0.6)}, 0), ({IDEAL}, 1.2))
+    )
+    assert len(rods) == 12
+    assert np.allclose([np.linalg.det([ray, way]) for way in rods], 0, atol=1e-9)
+
+
+@pytest.mark.parametrize(("tilt", "roll"), [(3.4, 7.8), (10, -25), (0.5, 20)])
+def test_a_horizon_is_pulled_to_where_a_camera_so_tilted_and_rolled_sees_it(tilt, roll, lines):
+    drawing = MODELS["roll"].drawing(tilt=tilt, roll=roll)
+    near = np.array(grip_of(drawing, "horizon").at)
+    t, turn = np.radians([tilt, roll])
+    R = rotation_from_angles(0, 0, turn) @ rotation_from_angles(t, 0, 0)
+    camera = Camera(intrinsics(800, 800, 325, 238), pose(R, [0, 0, 0]))
+    ends = camera.vanishing_point(np.array([[0.3, 0, 1.0], [-0.2, 0, 1]]))
+    skyline = next(xy for _, xy, ink, _ in lines if ink == IDEAL)
+    for at in (near, *skyline):
+        assert abs(np.linalg.det([*(at - ends[:1]), ends[1] - ends[0]])) < 0.5
+    assert np.linalg.norm(near - [325, 238]) == pytest.approx(800 * np.tan(t), rel=1e-4)
+    pulled = MODELS["roll"].dragged("horizon", tuple(near))
+    assert [pulled["tilt"], pulled["roll"]] == [tilt, roll]
 
 
 def test_the_pale_tree_tells_its_height_when_the_green_one_has_come_there(monkeypatch):
@@ -3998,6 +4055,7 @@ FREE_TO_MOVE = {
     ("swing", "row 5"): {"row": 5},
     "similar": {"f": 7},
     "clicks": {"noise": 0.4},
+    "roll": {"tilt": 9, "roll": 0},
     "stop": {"stop": 0},
 }
 ON_A_WAY = {  # along a curve, by its x
@@ -4062,12 +4120,12 @@ ON_A_CURVE = {  # its nearest place
     ("door", "hinge"),
     ("wishes", "foot"),
     ("origin", "hinge"),
+    ("parallel", "ray"),
     *(("meet", end) for end in ("a1", "b1", "a2", "b2")),
 }
 FROM_ONE_TO_ONE = {("clouds", "picture"): 4}  # from picture to picture; the last
 TURNS_ABOUT = {
     "rails": (0, 0),
-    "mark": (0, 0),
     "line": (0, 0),
     "h": (0, 0),
     "d": (0, 0),

@@ -31,7 +31,7 @@ _STORIES = (
     "rectification", "disparity", "depth", "cube", "conic", "seam", "swing", "frame", "meet",
     "residuals", "enlarged", "hinge", "horizon", "nails", "origin", "similar", "clicks", "zoom",
     "rim", "decentred", "changes", "rail", "protractor", "asks", "divide", "stop", "pixels",
-    "rodrigues", "push", "wishes", "bowl", "rows", "parabola", "six",
+    "rodrigues", "push", "wishes", "bowl", "rows", "parabola", "six", "parallel", "roll",
 )  # fmt: skip
 __all__ = ["NAMES", "pull_points", "explore", "model"]
 NAMES = (*_MODELS, *_STORIES)

@@ -9,7 +9,7 @@ from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Panel, Paper
 from cvnotes.show.style import CAMERA, IDEAL, MUTED, mixed
 
-_SIZE, _A = (640, 480), intrinsics(800, 804, 325, 238)
+SIZE, _A = (640, 480), intrinsics(800, 804, 325, 238)
 _R = rotation_from_angles(0.06, 0.05, 0.14)  # of the chapter's tilted camera
 _ROW, _TALL, _START = -4.0, 6.0, 1.95  # m: where the poles stand, their height, the eye's at first
 _POLES, _MARKED = np.arange(15.0, 490, 25), 4  # m ahead; how many are marked
@@ -31,7 +31,7 @@ def eye_model() -> Model:
 
     def draw(paper: Paper, values: Values) -> Drawing:
         height = values["height"]
-        picture = paper.picture_panel((440, 330), _SIZE, "what the camera sees")
+        picture = paper.picture_panel((440, 330), SIZE, "what the camera sees")
         _draw_picture(picture, height)
         side = paper.panel(
             (330, 330), (-18, 100), (8.6, -0.8), "from the side (m), heights stretched"
@@ -45,9 +45,10 @@ def eye_model() -> Model:
     return Model("eye", about, settings, draw, {"height": raised})
 
 
-def _draw_picture(panel: Panel, height: float) -> None:
-    camera = Camera(_A, pose(_R, _R @ [0, height, 0]))  # the grass is the plane y = 0
-    a, b, c = np.linalg.inv(_A).T @ _R @ [0, 1, 0]
+def draw_railway(panel: Panel, A: Array, R: Array, height: float) -> Camera:
+    """Draw the railway as a camera sees it that is so high above the grass, and its horizon."""
+    camera = Camera(A, pose(R, R @ [0, height, 0]))  # the grass is the plane y = 0
+    a, b, c = np.linalg.inv(A).T @ R @ [0, 1, 0]
     skyline = np.array([[u, -(a * u + c) / b] for u in (-20.0, 660.0)])
 
     def fill(x: npt.ArrayLike, y: npt.ArrayLike, z: npt.ArrayLike, ink: str) -> None:
@@ -70,7 +71,14 @@ def _draw_picture(panel: Panel, height: float) -> None:
         aside = _ROW + np.array([-0.09, 0.09, 0.09, -0.09])
         fill(aside, [0, 0, -_TALL, -_TALL], [z] * 4, _WOOD)
     panel.line(skyline, IDEAL, 1.5)
-    panel.text(skyline[1] - [30, 28], "horizon", IDEAL, anchor="rm")
+    (left, _), (right, far) = skyline
+    end, anchor = (right - 30, "rm") if 40 < far < SIZE[1] else (left + 30, "lm")
+    panel.text([end, -(a * end + c) / b - 24], "horizon", IDEAL, anchor=anchor)
+    return camera
+
+
+def _draw_picture(panel: Panel, height: float) -> None:
+    camera = draw_railway(panel, _A, _R, height)
     if _marked(height):
         panel.mark(camera.project([[_ROW, -height, z] for z in _POLES[:_MARKED]]), "world", 4.5)
 

@@ -20,6 +20,7 @@ _DISC, _DISC_AT = 0.16, np.array([-0.38, 0.19])  # the whole map, small, beside 
 _SIDE = 21  # degrees to either side, to which the cell is pulled
 _SEEN = -22.1, 21.5  # degrees that the picture shows, from its left border to its right one
 _NAMED = np.radians([-20, 0, 20])  # directions whose degrees are written there
+_ROWS = ((10, 368), (100, 264), (1000, 219), (np.inf, 194))  # m ahead; the row of its quadruple
 _GRASS, _UNSEEN, _YELLOW = "#E6EFDF", "#F4F6F1", "#F0E442"
 _MEADOW, _PALE = "#7C8A5C", "#A6F0D8"  # grass of the photograph, and the grid upon it
 # Once round a cell of side 1, from the left of its near edge: bent on the map, so in short steps.
@@ -30,13 +31,13 @@ _EDGE = np.stack([np.interp(np.linspace(0, 4, 65), range(5), at) for at in (
 def horizon_model() -> Model:
     """Make the model of a cell of the ground, pulled up to the line at infinity."""
     settings = (
-        Setting("part", "how far", 0.3, 1, 0.005, 0.375, "of the cell: 1 is infinity, 0.5 is 20 m"),
+        Setting("part", "how far (1: ∞)", 0.3, 1, 0.005, 0.375, "of the cell: 0.5 is 20 m"),
         Setting("turn", "direction (°)", -_SIDE, _SIDE, 1, 0, "to the right of the rails"),
     )
     about = (
         "The ground from above with a grid of 4 m, far distances pressed together, so that the "
         "line at infinity is a rim; and the same grid in the picture of a camera, where it is the "
-        "horizon. One cell is yellow in both."
+        "horizon. One cell is yellow in both; four places straight ahead are told as quadruples."
     )
 
     def on_map(_: Values, at: Array) -> Values:
@@ -66,6 +67,13 @@ def seen(homogeneous: Array) -> Array:
     x, z, w = np.moveaxis(homogeneous, -1, 0)
     m = np.stack([x, _DOWN * w, z], axis=-1) @ _CAMERA.A.T
     return np.asarray(m[..., :2] / m[..., 2:])
+
+
+def quadruple(homogeneous: Array) -> str:
+    """Write a point [X Z w] of the ground as the quadruple, in m, whose third number is 1."""
+    x, z, w = homogeneous
+    told = (f"{number / z + 0.0:.2g}" for number in (x, _DOWN * w, z, w))
+    return f"[{' '.join(told)}]"
 
 
 def _draw(paper: Paper, values: Values) -> Drawing:
@@ -160,6 +168,12 @@ def _picture(sharpness: int) -> Drawn:
     horizon = seen(np.stack([np.sin(_NAMED), np.cos(_NAMED), 0 * _NAMED], axis=1))
     panel.line(horizon + [[-40, 0], [0, 0], [40, 0]], IDEAL, 3)
     _name(panel, horizon - [0, 30])
+    for away, row in _ROWS:
+        place = np.array([0, 1, 1 / away])
+        name = {1000: "1 km", np.inf: "∞"}.get(away, f"{away:g} m")
+        v = seen(place)[1]
+        panel.line([[578, row], [584, row], [592, v], [632, v]], IDEAL, 1)
+        panel.text([574, row], f"{name}  {quadruple(place)}", IDEAL, anchor="rm", size=13)
     page = panel.drawn().copy()
     for z in range(15, 150, 25):  # the poles stand before the lines
         corners = _CAMERA.project([[-4.09, -4.05, z - 0.09], [-3.91, 1.95, z + 0.09]])
@@ -176,6 +190,7 @@ def _name(panel: Panel, places: Array) -> None:
 def _sentence(place: Array, high: float) -> str:
     if place[2] == 0:
         u, v = seen(place)
-        return f"The cell is at infinity. In the picture it is ({u:.1f}, {v:.1f}), on the horizon."
+        where = f"The cell is at infinity, {quadruple(place)}."
+        return f"{where} In the picture it is ({u:.1f}, {v:.1f}), on the horizon."
     away = np.hypot(*place[:2]) / place[2]
-    return f"The cell is {away:.0f} m away. Its 4 m are {high:.2g} px high in the picture."
+    return f"The cell is {away:.0f} m away, {quadruple(place)}. Its 4 m are {high:.2g} px high."

@@ -18,8 +18,7 @@ _NEAREST = 0.2  # m: what is nearer to the camera is not drawn
 _WOOD, _BALLAST, _FAR = "#6B574A", "#B5ADA3", "#A1968B"  # the last is the mean of both
 _SKY, _HAZE, _GRASS = np.array([[176, 203, 234], [233, 238, 239], [142, 163, 98]])
 _REACH = 8.2  # m: how far away the direction is taken hold of
-_PLANE = 6.0  # m: how far away the image plane is drawn from above, the ring's diameter
-_SQUARE = [[-1, -1], [1, -1], [1, 1], [-1, 1], [-1, -1.2]]
+_PLANE = 6.0  # m: how far away the image plane is drawn from above
 
 
 def projection_model(camera: Camera, _: Chessboard) -> Model:
@@ -31,8 +30,7 @@ def projection_model(camera: Camera, _: Chessboard) -> Model:
     )
     about = (
         "Two rails as the camera sees them, meeting in their vanishing point; beside it the same "
-        "from above, with the ray through the camera's centre that is parallel to the rails, and a "
-        "ring through the camera, which this ray cuts in a mark."
+        "from above, with the ray through the camera's centre that is parallel to the rails."
     )
     ideal = pinhole(camera)
 
@@ -45,7 +43,7 @@ def projection_model(camera: Camera, _: Chessboard) -> Model:
         # A direction has no sign: beyond 90° it goes on at −90°.
         return {"heading": float((np.degrees(np.arctan2(*at)) + 90) % 180 - 90)}
 
-    drags = {"vanishing point": pointed, "rails": turned, "mark": turned}
+    drags = {"vanishing point": pointed, "rails": turned}
     return Model("projection", about, settings, partial(_draw, ideal), drags)
 
 
@@ -120,8 +118,6 @@ def _draw_above(panel: Panel, camera: Camera, middle: Array, along: Array, acros
     panel.line(5 * view, CAMERA, 0.8)
     panel.line([[-9, _PLANE], [9, _PLANE]], CAMERA, 0.8)  # the plane goes on
     panel.line([[left, _PLANE], [right, _PLANE]], CAMERA, 3)  # the picture on it
-    # The ring of chapter 1, turned over: the camera is its top, the image plane its numbers.
-    panel.line(_PLANE / 2 * (circle(121) + [0, 1]), IDEAL, 1.5)
     panel.line(np.outer([0, 20], along[::2]), IDEAL, 1.2, dash=5)
     panel.mark([0, 0], "camera", 8)
     held = _REACH * along[::2]
@@ -129,15 +125,10 @@ def _draw_above(panel: Panel, camera: Camera, middle: Array, along: Array, acros
     panel.grip("rails", "the direction of the rails, from above", held, 5)
     if along[2] > 0:
         panel.mark(_PLANE * along[::2] / along[2], "ideal", 8)
-    # A hollow square: the plus, which is close to it straight ahead, and the camera stay in sight.
-    dot = _PLANE * along[2] / np.sum(along[::2] ** 2) * along[::2]
-    panel.grip("mark", "the green mark, round the ring", dot, 5)
-    panel.line(dot + 5.5 * panel.pixel * np.array(_SQUARE), WORLD, 2.5)
     # On the side that the rails leave free, and over all lines.
     side = 1.0 if along[0] >= 0 else -1.0
     anchor = "lm" if side > 0 else "rm"
     panel.text([0.4 * side, -0.6], "camera", CAMERA, anchor=anchor)
-    panel.text([0, -1.15], "∞", IDEAL, anchor="mm", size=15)
     beside = abs(right) + 0.3
     if along[2] > 0 and (out := _PLANE * abs(along[0]) / along[2]) < _REACH:
         # Not upon the vanishing point; without room beside it, at the other border.

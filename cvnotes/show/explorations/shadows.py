@@ -23,7 +23,7 @@ _EYE = np.array([0, 0, 13.0])  # m, as all below
 _CAMERA = Camera(intrinsics(400, 400, 319.5, 239.5), pose(np.eye(3), -_EYE), size=SIZE)
 _WARM, _BLUE = (1.0, 0.89, 0.74), (0.22, 0.45, 0.85)  # the evening sky, low and high
 _SUN, _GLOW, _DARK = "#FFFDF0", "#FFE3A6", "#33302A"  # the sun, its light; a shadow's tip
-_DISC = 18  # px, radius of the sun
+_DISC, _ACROSS = 18, 2000  # px: radius of the sun; more than any picture is long
 _NEAR, _THINNEST = 0.2, 3  # m: what is nearer is not drawn; px, of a shadow far away
 POLES = np.array([[-4.0, -4.05, z] for z in range(15, 215, 25)])  # m, the tops
 GROUND, _BALLAST, _BESIDE = 1.95, 1.77, 2.3  # m, their y, and how far the ballast reaches
@@ -48,8 +48,7 @@ def shadows_model() -> Model:
         panel.image(photographed(_CAMERA, np.tile(sun, (len(POLES), 1)), sun))
         end = _CAMERA.vanishing_point(sun)
         for top in POLES[1:5]:  # the first one stands beside the camera
-            if (tip_of(top, sun) - _EYE)[2] > _NEAR:  # else its tip lies behind the camera
-                draw_ray(panel, _CAMERA, top, sun)
+            draw_ray(panel, _CAMERA, top, sun)
         panel.mark(end, "estimated", 8)
         held = end.clip(16, np.array(SIZE) - 17)
         panel.grip("sun", "the sun, or the shadow of the camera", held, 10)
@@ -156,11 +155,17 @@ def _mask(polygons: list[Array], thinnest: float = 0) -> Image.Image:
 
 
 def draw_ray(panel: Panel, camera: Camera, top: Array, sun: Array) -> None:
-    """Draw the ray that ends in the tip of a shadow, on to where all rays seem to begin or end."""
+    """Draw the ray that ends in the tip of a shadow, on to where all rays seem to begin or end.
+
+    It enters at the border of the picture where the sun, or the tip, is behind the camera.
+    """
     tip, over = camera.project([tip_of(top, sun), top])
     end = camera.vanishing_point(sun) if sun[2] else over + 9 * (over - tip)
-    panel.line([over, tip, end] if sun[2] < 0 else [tip, over, end], ESTIMATED, 1)
-    panel.polygons([tip + 2.5 * panel.pixel * circle(20)], _DARK)
+    border = over + _ACROSS * (over - end) / np.linalg.norm(over - end)
+    ahead = (tip_of(top, sun) - camera.centre)[2] > _NEAR
+    panel.line([tip if ahead and sun[2] >= 0 else border, over, end], ESTIMATED, 1)
+    if ahead:
+        panel.polygons([tip + 2.5 * panel.pixel * circle(20)], _DARK)
 
 
 def tip_of(top: Array, sun: Array) -> Array:
@@ -182,7 +187,7 @@ def _draw_plan(panel: Panel, sun: Array) -> None:
     side = -1 if to_sun[0] < -0.3 else 1  # the words stand beside the line, away from the shadows
     aside = side * np.copysign(1, to_sun[1]) * np.array([to_sun[1], -to_sun[0]])
     beside = (26 + 20 * to_sun[0] ** 2) * to_sun + (np.abs(aside) @ [14, 4]) * aside
-    panel.text(beside, "to the sun", ESTIMATED, anchor="mm")
+    panel.text(beside.clip([-44, -26], [44, 98]), "to the sun", ESTIMATED, anchor="mm")
     panel.mark([0, 0], "camera", 9)
     below = -4 if sun[2] > 0 else 4
     panel.text([4 * side, below], "camera", CAMERA, anchor="lm" if side > 0 else "rm")
