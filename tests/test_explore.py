@@ -81,6 +81,7 @@ from cvnotes.show.explorations import (
     moved,
     nails,
     plane,
+    poster,
     protractor,
     push,
     rodrigues,
@@ -129,6 +130,7 @@ from cvnotes.show.explorations.valley import floor
 from cvnotes.show.explorations.votes import slopes, window_at
 from cvnotes.show.style import MUTED, mixed
 from cvnotes.show.typeface import font_file
+from cvnotes.stereo import calibrate_stereo, triangulate
 from cvnotes.targets import Chessboard, TwoPlanes, refine_edges, refine_subpixel
 from cvnotes.warping import backward_warp, zoom_map
 
@@ -731,18 +733,18 @@ def test_holes_are_orange_and_folds_are_blue():
     drawing = MODELS["warp"].drawing(angle=20, zoom=1)
     holes, _, folds = numbers(drawing.sentence)[:3]
     left = drawing.picture[TITLE : TITLE + 316, MARGIN : MARGIN + 420].astype(int)
-    blue = (left[..., 2] > left[..., 0] + 40).sum() / 16  # pixels of 4 × 4
+    blue = (left[..., 2] > left[..., 0] + 100).sum() / 16  # pixels of 4 × 4
     orange = (np.abs(left - colour(ESTIMATED)).max(axis=-1) < 10).sum() / 16
     assert blue == pytest.approx(folds, rel=0.05)
     assert folds == pytest.approx(holes, rel=0.1)  # what is missing here is stacked there
     assert orange == pytest.approx(holes, rel=0.05)
-    # Opaque, and light where the board is white: at the smallest zoom it is still seen.
+    # Opaque, and light where the room is: at the smallest zoom it is still seen.
     small = (
         MODELS["warp"].drawing(angle=20, zoom=0.25).picture[TITLE : TITLE + 316, :430].astype(int)
     )
     blues = small[small[..., 2] > small[..., 0] + 100]
     assert len(blues) / 16 == pytest.approx(519, abs=2)
-    assert np.ptp(np.quantile(blues[:, 1], [0.05, 0.95])) > 60
+    assert np.ptp(np.quantile(blues[:, 1], [0.05, 0.95])) > 30
 
 
 @pytest.fixture(scope="module")
@@ -2980,7 +2982,7 @@ def test_shrunken_rings_are_those_of_the_library_blurred_or_not():
         shown = drawing.picture[TITLE : TITLE + 360, left : left + 360, 0].astype(float)
         at = np.rint(4.5 * (np.arange(80) + 0.5) - 0.5).astype(int)
         off = np.abs(shown[np.ix_(at, at)] - new)[10:-10, 10:-10]
-        assert np.quantile(off, 0.95) < 5  # every eighth grey level is drawn
+        assert np.quantile(off, 0.9) < 5  # every eighth grey level is drawn; and a frame
     drawing = MODELS["rings"].drawing(place=30)  # the handle covers no ring that is true
     u, v = grip_of(drawing, "place").at
     assert (u, v) == (149.5, pytest.approx(229.5))
@@ -3002,8 +3004,8 @@ def test_the_epipolar_plane_cuts_the_second_picture_in_its_line():
         said = numbers(shown(u=u, v=v, depth=3500).sentence)
         partner = second.project(plane.on_the_ray(u, v, 3500))
         assert np.allclose(said[1:3], partner, atol=0.51)
-        u2, v2 = partner * 272 / 320
-        below = shown(u=u, v=v, depth=3500).picture[TITLE + 232 :, MARGIN : MARGIN + 272]
+        u2, v2 = partner * 276 / 320
+        below = shown(u=u, v=v, depth=3500).picture[2 * TITLE + 207 + 6 :, MARGIN : MARGIN + 276]
         assert count(below[round(v2) - 6 :][:12, round(u2) - 6 :][:, :12], ESTIMATED) > 10
 
 
@@ -3017,9 +3019,12 @@ def test_the_normal_is_T_cross_d_and_the_strip_is_the_second_picture_along_the_l
     first, second = (camera.centre for camera in plane.cameras())
     point, seen = plane.on_the_ray(190, 150, 3500.0), plane.onlooker().project
     n = np.cross(first - second, point - first)
-    foot = (first + second + point) / 3
-    way = seen(foot + 350 * n / np.linalg.norm(n)) - seen(foot)
-    assert np.allclose(arrows[-1][2], way)
+    rim, within = arrows[-2:]  # black, and orange on it
+    assert np.allclose(rim[1], seen(first))
+    assert np.allclose(rim[2], seen(first + 210 * n / np.linalg.norm(n)) - seen(first))
+    assert np.allclose(within[2], 0.9 * rim[2])
+    T = arrows[0]  # from the second centre to the first
+    assert np.allclose([T[1], T[1] + T[2]], [seen(second), seen(first)])
     MODELS["epipolar"].drawing(u=320, v=420)  # a tile
     (strip,) = (each for each in images if each.shape[:2] == (22, 205))
     nearness = np.linspace(0.52, 0.02, 205)[::8]  # 1/m, and even along the strip
@@ -3954,14 +3959,14 @@ def test_what_has_names_is_chosen_from_a_list_and_follows_the_hand():
 
 
 def test_a_choice_is_a_switch_that_changes_the_picture_and_goes_back_with_the_rest():
-    widget = explorations.explore("warp")
+    widget = explorations.explore("enlarged")
     start = widget.image.value
-    assert widget.values["bilinear"] == 0
-    widget.sliders["bilinear"].value = True
     assert widget.values["bilinear"] == 1
+    widget.sliders["bilinear"].value = False
+    assert widget.values["bilinear"] == 0
     assert widget.image.value != start
     widget.reset_button.click()
-    assert widget.sliders["bilinear"].value is False
+    assert widget.sliders["bilinear"].value is True
     assert widget.image.value == start
     widget.close_all()
 
@@ -4056,6 +4061,7 @@ FREE_TO_MOVE = {
     "similar": {"f": 7},
     "clicks": {"noise": 0.4},
     "roll": {"tilt": 9, "roll": 0},
+    "thirteen": {"pair": 5},
     "stop": {"stop": 0},
 }
 ON_A_WAY = {  # along a curve, by its x
@@ -4090,6 +4096,8 @@ ON_A_WAY = {  # along a curve, by its x
     ("eleventh", "left"),
     ("wishes", "m"),
     ("parabola", "t"),
+    ("poster", "width"),
+    ("thirteen", "number"),
 }
 ROUND = {
     ("rim", "ring"),
@@ -4121,6 +4129,7 @@ ON_A_CURVE = {  # its nearest place
     ("wishes", "foot"),
     ("origin", "hinge"),
     ("parallel", "ray"),
+    ("thirteen", "dot"),
     *(("meet", end) for end in ("a1", "b1", "a2", "b2")),
 }
 FROM_ONE_TO_ONE = {("clouds", "picture"): 4}  # from picture to picture; the last
@@ -5112,6 +5121,7 @@ FOLDED = {
     "epipolar",
     "plane",
     "eleventh",
+    "poster",
 }
 
 
@@ -5136,3 +5146,78 @@ def test_the_bend_of_the_hinge_is_pulled_along_an_axis_that_ends_at_one_plane():
         if angle < 180:
             told = numbers(MODELS["hinge"].drawing(angle=angle).sentence)[-1]
             assert 10 ** np.array(at) == pytest.approx([1 / (180 - angle), told], rel=0.02)
+
+
+def test_the_sun_of_the_width_that_A_gives_is_round_in_its_circle_and_the_guessed_one_is_not():
+    exact = poster.camera().project(poster.poster_room().vertices[:4])
+    assert poster.wide_by_high(exact) == pytest.approx(2600 / 1200, rel=1e-9)
+    top, bottom = exact[[0, 1]], exact[[3, 2]]
+    for part in (1, 0.85):  # of the print, from the left: the four stay corners of a rectangle
+        half = poster.camera().project([[-2979.0, Y, 6300 + part * 2600] for Y in (-900, 300)])
+        at = np.rint([top[0], *half, bottom[0]]).ravel().astype(int).tolist()
+        names = [f"{axis}{i}" for i in range(1, 5) for axis in "uv"]
+        drawing = MODELS["poster"].drawing(**dict(zip(names, at, strict=True)))
+        _, wide, high, ratio, across, down = numbers(drawing.sentence)
+        assert ratio == pytest.approx(part * 2600 / 1200, rel=0.015)
+        assert across == pytest.approx(down, abs=2)
+        assert wide < 0.82 * high
+        red = np.abs(drawing.picture.astype(int) - [188, 54, 36]).max(axis=2) < 25
+        v, u = np.nonzero(red[:, MARGIN + 446 :])
+        below = v > 2 * TITLE + 151 + 6
+        for which, round_ in ((~below, wide / high), (below, 1)):
+            shown = np.ptp(u[which]) / np.ptp(v[which])
+            assert shown == pytest.approx(round_, abs=0.04)
+
+
+def test_a_board_in_the_air_is_what_both_photographs_say_and_its_rows_are_measured(monkeypatch):
+    marked, mark = [], Panel.mark
+    monkeypatch.setattr(
+        Panel,
+        "mark",
+        lambda *how, **more: (marked.append((how[0].title, how[2], how[1])), mark(*how, **more)),
+    )
+    real = course.real_corners()
+    for i in (0, 7, 12):
+        marked.clear()
+        drawing = MODELS["thirteen"].drawing(pair=i + 1)
+        by_title = {(title.split(",")[-1].strip(), meaning): at for title, meaning, at in marked}
+        for name, m in (("left", real.left[i]), ("right", real.right[i])):
+            assert np.allclose(by_title[f"the {name} camera", "lens"], m)
+            assert np.allclose(by_title[f"the {name} camera", "estimated"], m[[0, 8]])
+        rest = np.arange(13) != i
+        rig = calibrate_stereo(
+            real.board.points, real.left[rest], real.right[rest], real.size, lens="k1 k2 p1 p2"
+        )
+        W = triangulate(rig.cameras, [real.left[i], real.right[i]])
+        assert np.allclose(by_title["from above", "estimated"], W[[0, 8]][:, [2, 0]], atol=1e-6)
+        long = np.linalg.norm(W[8::9] - W[::9], axis=1)
+        rows = [at for title, _, at in marked if title == "its six rows (mm)"]
+        assert np.allclose(rows, np.column_stack([long, range(1, 7)]), atol=1e-6)
+        said = numbers(drawing.sentence)
+        assert said[:4] == pytest.approx(
+            [i + 1, W[:, 2].mean(), *(long.min(), long.max())], abs=0.5
+        )
+        dot = grip_of(drawing, "dot").at
+        assert MODELS["thirteen"].dragged("dot", dot, pair=5)["pair"] == i + 1
+
+
+def test_how_far_a_lens_has_moved_a_pixel_is_written_beside_it_and_no_line_crosses(written):
+    for u, v in ((4, 4), (55, 40)):
+        written.clear()
+        drawing = MODELS["asks"].drawing(warp=4, u=u, v=v)
+        (words,) = [words for words in written if "nearer to the middle" in words]
+        own, at = np.array([u, v]), asked_by_hand(4, u, v)
+        assert float(words.split()[0]) == pytest.approx(np.hypot(*(own - at)), abs=0.0051)
+        middle = np.rint(6 * ((own + at) / 2 + 0.5)).astype(int) + [366 + MARGIN, TITLE]
+        beside = drawing.picture[middle[1] - 3 : middle[1] + 4, middle[0] - 3 : middle[0] + 4]
+        assert count(beside, ESTIMATED) > 12  # thick
+        between = drawing.picture[TITLE + 10 : TITLE + 260, MARGIN + 180 : MARGIN + 300]
+        assert count(between, ESTIMATED) == 0
+
+
+def test_the_blue_frame_holds_the_waves_that_are_two_new_pixels_long():
+    picture = MODELS["rings"].drawing(blur=1, place=20).picture[TITLE:, MARGIN + 366 :]
+    blue = np.abs(picture[:360, :360].astype(int) - colour(LENS)).max(axis=2) < 60
+    v, u = np.nonzero(blue)
+    reach = 240 / 360 * np.ptp(u[v > 180]) / 2  # below the words
+    assert 0.0036 * reach == pytest.approx(1 / 6, rel=0.03)

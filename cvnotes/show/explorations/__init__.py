@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from cvnotes.show.explorations.shell import Explorer, PulledPoints
 
 # Each is a module of this folder, in which `<name>_model` makes its model: of a camera and a board,
-_MODELS = ("projection", "camera", "lens", "noise", "warp", "tilt")
+_MODELS = ("projection", "camera", "lens", "noise", "tilt")
 # or of what the course itself has photographed or thought of.
 _STORIES = (
     "straighten", "stands", "pairs", "ring", "maps", "ruler", "eye", "rod", "shadows", "forged",
@@ -32,6 +32,7 @@ _STORIES = (
     "residuals", "enlarged", "hinge", "horizon", "nails", "origin", "similar", "clicks", "zoom",
     "rim", "decentred", "changes", "rail", "protractor", "asks", "divide", "stop", "pixels",
     "rodrigues", "push", "wishes", "bowl", "rows", "parabola", "six", "parallel", "roll",
+    "warp", "poster", "thirteen",
 )  # fmt: skip
 __all__ = ["NAMES", "pull_points", "explore", "model"]
 NAMES = (*_MODELS, *_STORIES)

@@ -11,6 +11,7 @@ from cvnotes.pictures import render_scene
 from cvnotes.pictures.posters import poster_room
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Drawn, Panel, Paper
+from cvnotes.show.explorations.strokes import circle
 from cvnotes.show.style import ESTIMATED, IDEAL, LENS, hexed
 from cvnotes.warping import (
     PixelMap,
@@ -32,6 +33,7 @@ _MIDDLE = (np.array(SIZE) - 1) / 2
 _CORNERS = np.array([[6300, -900], [8900, -900], [8900, 300], [6300, 300]])  # of the print, mm
 _MARGIN, _PIXEL = 120, 2840 / SIZE[0]  # of the wall around it, and side of a new pixel, mm
 _LENS = Lens(k=(-0.3,))
+_HALF = (np.array([4, 4]) + _MIDDLE) / 2  # half the way from a corner to the middle
 
 
 def asks_model() -> Model:
@@ -108,30 +110,22 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     if warp == 4:  # from where they would ask without it
         own = map_array(lambda m: m, SIZE)
         ways = np.stack([own, asked], axis=2)[1::_EVERY, 1::_EVERY]
-        right.segments(ways.reshape(-1, 2, 2), LENS, 1.2)
+        right.segments(ways.reshape(-1, 2, 2), "white", 3.2)
+        right.segments(ways.reshape(-1, 2, 2), LENS, 1.8)
     half = _DOT / 2 * right.pixel
     right.polygons([_square(dot - half, 2 * half)[:4] for dot in asked.reshape(-1, 2)], LENS)
-    # One line over both panels: the second begins a gap further on.
-    beside, low = np.array([right.sheet[0] / (right.width / 2) * SIZE[0], 0]), np.floor(at)
-    begin, end = here + [wide / 2, 0], np.array([low[0] - 0.5, at[1]])
-    out = not ((at > -1) & (at < SIZE)).all()
-    if out:  # to the border of the photograph, within, and from there an arrow
-        border = np.clip(at, -0.5, np.array(SIZE) - 0.5)
-        end = border + 4 * np.sign(border - at)
-    for panel, ends in ((left, (begin, end + beside)), (right, (begin - beside, end))):
-        _framed(panel, ends, 1.6)
-    if out:
-        right.arrows(end, border - end, "white", 5)
-        right.arrows(end, border - end, ESTIMATED, 2.4)
-    _framed(left, _square(here - wide / 2, wide), 2)
-    if warp == 4:
-        _framed(right, np.array([here, at]), 1.6)
-    _framed(right, _square(low - 0.5, 2), 2)
-    left.grip("pixel", "a pixel of the new picture", here, wide)
-    near, mix = _near(paper, photo, asked, (u, v)), _mix(paper, photo, at)
-    where = ", beside the photograph" if out else ""
+    out, where = not ((at > -1) & (at < SIZE)).all(), ""
     if warp == 4:
         where = f", {np.hypot(*(at - here)):.2f} px nearer to the middle"
+        _framed(left, _HALF + 0.8 * circle(25), 1)
+        _draw_displaced(right, here, at, where[2:])
+    else:
+        where = ", beside the photograph" if out else ""
+        _draw_connected(left, right, here + [wide / 2, 0], at)
+    _framed(left, _square(here - wide / 2, wide), 2)
+    _framed(right, _square(np.floor(at) - 0.5, 2), 2)
+    left.grip("pixel", "a pixel of the new picture", here, wide)
+    near, mix = _near(paper, photo, asked, (u, v)), _mix(paper, photo, at)
     across, down = apart(asked, u, v)
     sentence = (
         f"New pixel ({u}, {v}) asks at ({at[0]:.2f}, {at[1]:.2f}){where}; its neighbour in the row "
@@ -140,6 +134,27 @@ def _draw(paper: Paper, values: Values) -> Drawing:
         f"{photo[..., 0].size}."
     )
     return Drawing(paper.join((left, right, [near, mix])), sentence)
+
+
+def _draw_connected(left: Panel, right: Panel, begin: Array, at: Array) -> None:
+    """Draw one line over both panels, from a new pixel to where it asks: a gap is between."""
+    beside = np.array([right.sheet[0] / (right.width / 2) * SIZE[0], 0])
+    end, out = np.array([np.floor(at[0]) - 0.5, at[1]]), not ((at > -1) & (at < SIZE)).all()
+    if out:  # to the border of the photograph, within, and from there an arrow
+        border = np.clip(at, -0.5, np.array(SIZE) - 0.5)
+        end = border + 4 * np.sign(border - at)
+    for panel, ends in ((left, (begin, end + beside)), (right, (begin - beside, end))):
+        _framed(panel, ends, 1.6)
+    if out:
+        right.arrows(end, border - end, "white", 5)
+        right.arrows(end, border - end, ESTIMATED, 2.4)
+
+
+def _draw_displaced(panel: Panel, own: Array, at: Array, words: str) -> None:
+    """Draw by how much a lens has moved a pixel, thick, and write it on the side of the middle."""
+    _framed(panel, (own, at), 4)
+    side, anchor = (1.8, "lm") if own[0] < _MIDDLE[0] else (-1.8, "rm")
+    panel.text(at + [side, 0], words, ESTIMATED, anchor=anchor, size=13)
 
 
 def _pale(photo: Drawn) -> Drawn:

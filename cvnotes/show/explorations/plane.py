@@ -9,13 +9,14 @@ from cvnotes.camera import Camera, intrinsics, look_at
 from cvnotes.pictures import render_scene, room
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Drawn, Panel, Paper
-from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, LENS, WORLD, hexed
+from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, hexed
 
-_SIZE, _SHOWN, _OUTSIDE = (320, 240), (272, 204), (590, 436)  # px
+_SIZE, _SHOWN, _OUTSIDE = (320, 240), (276, 207), (650, 442)  # px
 _NEAREST, _FARTHEST = 1500, 6000  # mm along the axis
 _STANDS = 900.0  # mm before its camera's centre: there a picture is drawn
 _TILES = (80, 60)  # of a picture that stands in the room
 _TINT = "#FBDCC6"
+_NORMAL, _SQUARE = 210.0, 60.0  # mm: the arrow of n, and the side of a right angle
 
 
 def plane_model() -> Model:
@@ -51,7 +52,7 @@ def cameras() -> tuple[Camera, Camera]:
 @lru_cache(maxsize=1)
 def onlooker() -> Camera:
     """Return the camera by which both are seen."""
-    A = intrinsics(1080, 1080, 268, 256)
+    A = intrinsics(1370, 1370, 267, 191)
     return Camera(A, look_at([-1500, -3100, -1200], [60, 250, 4500]), size=_OUTSIDE)
 
 
@@ -114,24 +115,28 @@ def _draw_outside(panel: Panel, m: Array, point: Array, line: Array) -> None:
     panel.line(seen(np.array([one, one + 1.6 * (point - one)])), IDEAL, 1.2, dash=5)
     panel.line(seen(np.array([one, point])), IDEAL, 2)
     panel.line(seen(np.array([two, point])), ESTIMATED, 2)
-    panel.line(seen(np.array([one, two])), CAMERA, 3)
+    panel.line(seen(np.array([one, two])), CAMERA, 7)
     panel.line(seen(standing(second, line)), ESTIMATED, 3)
     panel.mark(seen(standing(first, m[None])), "ideal", 7)
     panel.mark(seen(standing(second, second.project(point)[None])), "estimated", 7)
-    for centre, name, side in ((one, "first", -10), (two, "second", 10)):
+    for centre, name, beside in ((one, "first", (32, 22)), (two, "second", (-22, 30))):
         panel.mark(seen(centre), "lens", 5)
-        panel.text(seen(centre) + [side, 14], name, CAMERA, anchor="rm" if side < 0 else "lm")
-    panel.text(seen((one + two) / 2) + [0, 16], "base line", CAMERA, anchor="mm")
-    d = (point - one) / np.linalg.norm(point - one)
-    n = np.cross(one - two, d)  # T leads from the second centre to the first
+        panel.text(seen(centre) + beside, name, CAMERA, size=18)
+    panel.text(seen(0.4 * one + 0.6 * two) + [0, 20], "base line", CAMERA, anchor="mm", size=18)
+    T, d = one - two, (point - one) / np.linalg.norm(point - one)
+    n = np.cross(T, d) / np.linalg.norm(np.cross(T, d))
+    for way in (-T / np.linalg.norm(T), d):  # n stands upright on both
+        corner = _SQUARE * np.array([n, n + way, way])
+        panel.line(seen(one + corner), IDEAL, 1.2)
     for start, way, name, ink, beside in (
-        (two, 0.3 * (one - two), "T", LENS, (0, -13)),
-        (one, 700 * d, "d", IDEAL, (-14, 0)),
-        ((one + two + point) / 3, 350 * n / np.linalg.norm(n), "n", WORLD, (13, -4)),
+        (two, T, "T", IDEAL, (-20, 6)),
+        (one, 700 * d, "d", IDEAL, (-16, 0)),
+        (one, _NORMAL * n, "n", ESTIMATED, (-14, 0)),
     ):
-        ends = seen(np.array([start, start + way]))
-        panel.arrows(ends[:1], np.diff(ends, axis=0), ink, 2.5)
-        panel.text(ends[1] + beside, name, ink, anchor="mm", size=14)
+        begin, end = seen(np.array([start, start + way]))
+        panel.arrows(begin, end - begin, IDEAL, 3 if ink == IDEAL else 5)
+        panel.text(end + beside, name, ink, anchor="mm", size=20)
+    panel.arrows(begin, 0.9 * (end - begin), ESTIMATED, 2.2)  # within its black rim
     panel.mark(seen(point), "estimated", 8)
     panel.grip("depth", "the point on its ray", seen(point), 6)
 

@@ -6,12 +6,13 @@ from cvnotes.base import Array
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Paper
 from cvnotes.show.explorations.strokes import circle
-from cvnotes.show.style import ESTIMATED, MUTED
+from cvnotes.show.style import ESTIMATED, LENS, MUTED
 
 _SIZE, _FINENESS = 240, 0.0036  # px, and rings per px for each px from the middle
 _SHRINK = 3  # how many old pixels a new one is wide
 _MIDDLE = (_SIZE - 1) / 2
 _AROUND = 16  # px that the profile shows to either side
+_FINEST = 1 / (2 * _SHRINK * _FINENESS)  # px from the middle: there a wave is two new pixels long
 _HANDLE = 229.5  # px down to what a hand takes hold of: at the lower border, off all true rings
 
 
@@ -71,6 +72,11 @@ def _draw(paper: Paper, values: Values) -> Drawing:
         f"shrunk by three, to {len(new)} × {len(new)} pixels",
     )  # fmt: skip
     right.image((8 * np.rint(new / 8)).clip(0, 255).astype(np.uint8), smooth=False)
+    frame = _MIDDLE + _FINEST * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1], [-1, -1]])
+    for ink, thick in (("white", 6.0), (LENS, 2.5)):
+        right.line(frame, ink, thick)
+    corner = frame[0] - [0, 3]
+    right.text(corner, "46 px to each side", LENS, anchor="ld", size=12)
     low, high = _MIDDLE + place + np.array([-_AROUND, _AROUND])
     for panel in (left, right):
         around = np.array([[low, -7], [high, -7], [high, 7], [low, 7], [low, -7]])
@@ -87,17 +93,19 @@ def _draw(paper: Paper, values: Values) -> Drawing:
         panel.line(curve, colour, 2)
         panel.mark(at[(at[:, 0] > low) & (at[:, 0] < high)], "estimated", 5)
         below.append(panel)
-    return Drawing(
-        paper.join((left, right), tuple(below)), _sentence(_FINENESS * place * _SHRINK, blur)
-    )
+    wide = np.maximum(*np.abs(np.meshgrid(*2 * [line[1::_SHRINK]]))) < _FINEST
+    left_of = [
+        f"{new[part].std():.0f} of {old[1::_SHRINK, 1::_SHRINK][part].std():.0f}"
+        for part in (wide, ~wide)
+    ]
+    said = f"{_sentence(_FINENESS * place * _SHRINK)} Inside the blue frame "
+    said += f"{left_of[0]} grey levels of contrast are left, outside {left_of[1]}."
+    return Drawing(paper.join((left, right), tuple(below)), said)
 
 
-def _sentence(rate: float, blur: float) -> str:
+def _sentence(rate: float) -> str:
     """Say how many rings pass from one new pixel to the next, and what these make of them."""
     said = f"There {rate:.2f} rings pass from one new pixel to the next"
     if rate <= 0.5:
-        said = f"{said}: at most one half, so that the new pixels can show them."
-    else:
-        said = f"{said}. The new pixels cannot tell that from {abs(rate - round(rate)):.2f}."
-    left = np.exp(-2 * (np.pi * rate * blur) ** 2)
-    return f"{said} The blur has left {left:.0%} of their contrast." if blur else said
+        return f"{said}: at most one half, so that the new pixels can show them."
+    return f"{said}. The new pixels cannot tell that from {abs(rate - round(rate)):.2f}."
