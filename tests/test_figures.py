@@ -84,7 +84,7 @@ def test_no_text_is_cut_off_and_no_two_texts_overlap(name):
         assert not box.count_overlaps(boxes[:i]), texts[i]
 
 
-@pytest.mark.parametrize("name", ["image", "points", "corners", "residuals"])
+@pytest.mark.parametrize("name", ["image", "points", "corners"])
 def test_pixels_have_v_downwards_equal_scales_and_centres_at_integers(name):
     ax = DRAWN[name](None)
     assert ax.get_xlim() == (-0.5, 63.5)
