@@ -3861,7 +3861,7 @@ FREE_TO_MOVE = {
     "similar": {"f": 7},
     "clicks": {"noise": 0.4},
     "stop": {"stop": 0},
-    "bowl": {"turn": -60},
+    "imitation": {"turn": -60},
 }
 ON_A_WAY = {  # along a curve, by its x
     ("residuals", "k1"),
@@ -3903,7 +3903,7 @@ ROUND = {
     ("walks", "line of sight"),
     ("formation", "line of sight"),
     ("tilt", "board"),
-    ("bowl", "pose"),
+    ("imitation", "pose"),
     *(("nails", f"nail {i}") for i in range(1, 5)),
 }
 ON_A_CURVE = {  # its nearest place
@@ -4922,7 +4922,7 @@ def test_what_a_pincushion_shows_in_the_corners_comes_from_farther_in():
 
 @pytest.mark.parametrize("turn", [0, -45, -15, 99, -165])
 def test_the_bars_below_the_bowls_are_what_one_view_and_four_know_of_the_camera(turn):
-    drawing, way = MODELS["bowl"].drawing(turn=turn), np.radians(turn)
+    drawing, way = MODELS["imitation"].drawing(turn=turn), np.radians(turn)
     for views, ink, row in ((1, "#EAAE7F", -0.76), (4, ESTIMATED, -1.38)):
         poses = np.kron(np.eye(views), [[np.cos(way)], [np.sin(way)]])
         J = np.column_stack([np.ones(2 * views), poses])
@@ -4934,8 +4934,10 @@ def test_the_bars_below_the_bowls_are_what_one_view_and_four_know_of_the_camera(
 
 def test_the_pose_of_the_bowl_points_to_the_hand_and_imitates_the_camera_along_its_arrow():
     for at, turn in (((1, 1), 45), ((-9, -9), -135), ((0.1, -2), -87), ((-1, 0), 180)):
-        assert MODELS["bowl"].dragged("pose", at)["turn"] == turn
-        assert ("unknown" in MODELS["bowl"].drawing(turn=turn).sentence) == (turn in (45, -135))
+        assert MODELS["imitation"].dragged("pose", at)["turn"] == turn
+        assert ("unknown" in MODELS["imitation"].drawing(turn=turn).sentence) == (
+            turn in (45, -135)
+        )
 
 
 def test_the_bend_of_the_hinge_is_pulled_along_an_axis_that_ends_at_one_plane():

@@ -33,7 +33,7 @@ _STORIES = (
     "frame", "ways", "meet", "residuals", "enlarged", "hinge", "horizon",
     "nails", "origin", "similar", "clicks", "zoom", "rim", "decentred",
     "changes", "rail", "protractor", "asks", "divide", "stop",
-    "pixels", "rodrigues", "door", "bowl",
+    "pixels", "rodrigues", "door", "imitation",
 )  # fmt: skip
 __all__ = ["NAMES", "pull_points", "explore", "model"]
 NAMES = (*_MODELS, *_STORIES)

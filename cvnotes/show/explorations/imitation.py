@@ -14,7 +14,7 @@ _FAR, _LEFT, _TOP, _FOOT = 2.2, -3.7, 4.3, -1.75
 _VIEWS = ((1, mixed("#FFFFFF", ESTIMATED, 0.5), -0.76), (4, ESTIMATED, -1.38))  # ink, and its bar
 
 
-def bowl_model() -> Model:
+def imitation_model() -> Model:
     """Make the model of a corner that a camera and a pose move, and of the squares left over."""
     settings = (
         Setting("turn", "direction of Jp (°)", -180, 180, 3, 0, "where the pose moves the corner"),
@@ -39,7 +39,7 @@ def bowl_model() -> Model:
     def turned(_: Values, at: Array) -> Values:
         return {"turn": float(np.degrees(np.arctan2(at[1], at[0])))}
 
-    return Model("bowl", about, settings, draw, {"pose": turned})
+    return Model("imitation", about, settings, draw, {"pose": turned})
 
 
 def parted(turn: float) -> tuple[Array, Array, Array]:
