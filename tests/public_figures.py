@@ -17,7 +17,6 @@ from public_face import (
     LINES,
     ONE,
     PICTURE,
-    RESULT,
     SEEN,
     SINGLE,
     Argument,
@@ -34,7 +33,6 @@ from cvnotes.show.figures import (
     calibration,
     estimates,
     lines,
-    quality,
 )
 from cvnotes.show.figures import (
     images as figures,
@@ -104,8 +102,6 @@ FIGURES = [
     ),
     figure(lines.draw_segments, {"segments": (LINES, rows(2))}, sizes=("size",), size=(640, 480)),
     figure(lines.segment_ends, {"segments": (LINES, rows(2))}),
-    # quality
-    figure(quality.draw_residuals, {"magnify": (50.0, ONE)}, calibration=RESULT),
     figure(
         coverage.covered_cells,
         {"image_points": (SEEN, rows(2))},

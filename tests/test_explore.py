@@ -4063,6 +4063,7 @@ FREE_TO_MOVE = {
     "roll": {"tilt": 9, "roll": 0},
     "thirteen": {"pair": 5},
     "stop": {"stop": 0},
+    "imitation": {"turn": -60},
 }
 ON_A_WAY = {  # along a curve, by its x
     ("residuals", "k1"),
@@ -4108,6 +4109,7 @@ ROUND = {
     ("formation", "line of sight"),
     ("rows", "line of sight"),
     ("tilt", "board"),
+    ("imitation", "pose"),
     *(("nails", f"nail {i}") for i in range(1, 5)),
 }
 ON_A_CURVE = {  # its nearest place
@@ -5137,6 +5139,26 @@ def test_coefficients_have_small_digits_wherever_a_reader_meets_them(name, writt
 def test_what_a_pincushion_shows_in_the_corners_comes_from_farther_in():
     sides = {k1: MODELS["lens"].drawing(k1=k1, k2=0).sentence[-4:-1] for k1 in (-0.2, 0.2)}
     assert sides == {-0.2: "out", 0.2: " in"}
+
+
+@pytest.mark.parametrize("turn", [0, -45, -15, 99, -165])
+def test_the_bars_below_the_bowls_are_what_one_view_and_four_know_of_the_camera(turn):
+    drawing, way = MODELS["imitation"].drawing(turn=turn), np.radians(turn)
+    for views, ink, row in ((1, "#EAAE7F", -0.76), (4, ESTIMATED, -1.38)):
+        poses = np.kron(np.eye(views), [[np.cos(way)], [np.sin(way)]])
+        J = np.column_stack([np.ones(2 * views), poses])
+        std = np.sqrt(np.linalg.inv(J.T @ J)[0, 0])
+        assert numbers(drawing.sentence)[-2 + (views > 1)] == pytest.approx(std, abs=6e-3)
+        bar = drawing.picture[TITLE + round((4.3 - row) / 6.05 * 392)][MARGIN + 420 + 120 :]
+        assert count(bar, ink, atol=12) == pytest.approx(2 * std * 440 / 5.9, abs=5)
+
+
+def test_the_pose_of_the_bowl_points_to_the_hand_and_imitates_the_camera_along_its_arrow():
+    for at, turn in (((1, 1), 45), ((-9, -9), -135), ((0.1, -2), -87), ((-1, 0), 180)):
+        assert MODELS["imitation"].dragged("pose", at)["turn"] == turn
+        assert ("unknown" in MODELS["imitation"].drawing(turn=turn).sentence) == (
+            turn in (45, -135)
+        )
 
 
 def test_the_bend_of_the_hinge_is_pulled_along_an_axis_that_ends_at_one_plane():

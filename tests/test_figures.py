@@ -5,16 +5,13 @@ import io
 import re
 import subprocess
 import sys
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.quiver import Quiver
 from PIL import Image
 
-from cvnotes.base import CvnotesError, DegenerateError, InputTypeError, ShapeError
-from cvnotes.calibration import BoardShape
+from cvnotes.base import CvnotesError, InputTypeError, ShapeError
 from cvnotes.camera import Camera, look_at
 from cvnotes.pictures import chart_room, course, render_scene
 from cvnotes.show import (
@@ -23,7 +20,6 @@ from cvnotes.show import (
     draw_image,
     draw_lines,
     draw_points,
-    draw_residuals,
     eight_projects,
     one_corner,
     panels,
@@ -39,33 +35,10 @@ BOARD = Chessboard((4, 3), 10.0)
 CORNERS = BOARD.points[:, :2] + 12.0
 
 
-def calibration(residuals, image_points=None, size=(64, 48)):
-    """Give what the figures need of a calibration."""
-    residuals = [np.asarray(r, dtype=float) for r in residuals]
-    if image_points is None:
-        image_points = [np.full_like(r, 20.0) + np.arange(len(r))[:, None] for r in residuals]
-    view_rms = np.array([np.sqrt((r**2).sum(1).mean()) for r in residuals])
-    every = np.concatenate(residuals)
-    return SimpleNamespace(
-        residuals=residuals,
-        image_points=image_points,
-        size=size,
-        view_rms=view_rms,
-        rms=float(np.sqrt((every**2).sum(1).mean())),
-    )
-
-
-NOISE = calibration(RNG.normal(0, 0.1, (5, 12, 2)), [CORNERS + i for i in range(5)])
-
-BENT = BOARD.points + RNG.normal(0, 0.1, BOARD.points.shape)
-FREE = BoardShape("free", BOARD.points, BENT, np.full_like(BENT, 0.02))
-NOISE.shape = FREE
-
 DRAWN = {
     "image": lambda ax: draw_image(GREY, ax=ax, title="a picture", ticks=True),
     "points": lambda ax: draw_points(CORNERS, size=(64, 48), ax=ax),
     "corners": lambda ax: draw_corners(GREY, CORNERS, BOARD, ax=ax),
-    "residuals": lambda ax: draw_residuals(NOISE, ax=ax),
 }
 
 
@@ -111,7 +84,7 @@ def test_no_text_is_cut_off_and_no_two_texts_overlap(name):
         assert not box.count_overlaps(boxes[:i]), texts[i]
 
 
-@pytest.mark.parametrize("name", ["image", "points", "corners", "residuals"])
+@pytest.mark.parametrize("name", ["image", "points", "corners"])
 def test_pixels_have_v_downwards_equal_scales_and_centres_at_integers(name):
     ax = DRAWN[name](None)
     assert ax.get_xlim() == (-0.5, 63.5)
@@ -209,43 +182,6 @@ def test_corners_of_another_board_are_refused():
         draw_corners(GREY, CORNERS[:-1], BOARD)
 
 
-# --- quality --------------------------------------------------------------------------------
-
-
-def quiver(ax):
-    (found,) = [c for c in ax.collections if isinstance(c, Quiver)]
-    return found
-
-
-def test_an_arrow_leads_from_the_prediction_towards_the_observation_magnified():
-    ax = draw_residuals(calibration([[[0.2, -0.1]]], [np.array([[30.0, 20.0]])]), magnify=50)
-    arrow = quiver(ax)
-    assert arrow.get_offsets().tolist() == [[29.8, 20.1]]
-    assert (arrow.U.tolist(), arrow.V.tolist()) == ([10.0], [-5.0])
-    assert (arrow.angles, arrow.scale, arrow.scale_units) == ("xy", 1, "xy")
-    assert ax.get_title() == "residuals × 50, RMS 0.224 px per point"
-
-
-def test_the_magnification_is_a_round_number_that_keeps_arrows_short():
-    for size in (0.003, 0.1, 1.0, 47.0):
-        made = calibration([np.full((20, 2), size)], size=(640, 480))
-        title = draw_residuals(made).get_title()
-        magnify = float(title.split("× ")[1].split(" ")[0].replace(",", ""))
-        assert f"{magnify:e}"[0] in "125"
-        assert 0.01 < magnify * size * np.sqrt(2) / 640 <= 0.04
-
-
-def test_perfect_data_has_residuals_that_can_be_drawn():
-    made = calibration([np.zeros((4, 2))])
-    show(draw_residuals(made), alt="nothing")
-
-
-def test_residuals_need_corners():
-    made = calibration([[[0.1, 0.1]]], image_points=[])
-    with pytest.raises(DegenerateError, match="read from a file that has no corners"):
-        draw_residuals(made)
-
-
 # --- style ----------------------------------------------------------------------------------
 
 # Machado, Oliveira and Fernandes (2009): how linear RGB looks without red or green cones.
@@ -304,14 +240,14 @@ def test_a_picture_carries_its_text_and_twice_the_pixels_of_its_width():
 
 
 def test_a_picture_is_white_behind_its_labels():
-    for ax in (draw_residuals(NOISE), draw_image(GREY)):
+    for ax in (draw_points(CORNERS, size=(64, 48)), draw_image(GREY)):
         picture = decoded(show(ax, alt="x"))
         assert picture.convert("RGB").getpixel((0, 0)) == (255, 255, 255)
 
 
 @pytest.mark.slow
 def test_line_drawings_are_small_png_and_photographs_webp():
-    figure = draw_residuals(NOISE).figure
+    figure = draw_points(CORNERS, size=(64, 48)).figure
     data, mime = encode(figure)
     assert mime == "image/png"
     assert len(data) < 30_000
@@ -374,11 +310,13 @@ def test_few_colours_are_kept_as_they_are_and_of_many_none_is_lost():
 
 
 def test_the_same_figure_gives_the_same_bytes():
-    assert encode(draw_residuals(NOISE).figure) == encode(draw_residuals(NOISE).figure)
+    assert encode(draw_points(CORNERS, size=(64, 48)).figure) == encode(
+        draw_points(CORNERS, size=(64, 48)).figure
+    )
 
 
 def test_a_figure_is_afterwards_what_it_was():
-    figure = draw_residuals(NOISE).figure
+    figure = draw_points(CORNERS, size=(64, 48)).figure
     figure.set_facecolor("yellow")
     before = figure.canvas, figure.dpi, figure.get_facecolor(), tuple(figure.get_size_inches())
     picture = decoded(show(figure, alt="x")).convert("RGB")

@@ -19,20 +19,20 @@ CHAPTERS = {
     "ch02": "vanishing_point focal_from_vanishing_points horizon where_the_rails_meet "
     "person_height",
     "ch03": "intrinsics_from_sensor project camera_centre cam1_from_cam2 new_intrinsics "
-    "nearest_rotation field_of_view rq",
+    "field_of_view rq",
     "ch04": "distort undistort fold_radius form_image corner_shift inverse_radius",
     "ch05": "board_points harris_measure saddle_point first_corner",
     "ch06": "design_matrix normaliser dlt four_points geometric_error ransac",
-    "ch07": "v_ij b_from_views a_from_b extrinsics radial_fit bad_views focal_from_turn "
-    "camera_covariance levenberg_marquardt",
+    "ch07": "v_ij nearest_rotation b_from_views a_from_b extrinsics radial_fit bad_views "
+    "focal_from_turn camera_covariance levenberg_marquardt",
     "ch08": "bilinear backward_warp count_holes undistortion_map",
     "ch09": "residuals error_bars which_to_trust own_camera pipeline jackknife",
     "ch10": "depth rectifying_rotation how_far",
 }
 # Asked for in the notebook of further exercises; all others in the notebook of their chapter.
 FURTHER = (
-    "line_through field_of_view nearest_rotation form_image geometric_error radial_fit "
-    "b_from_views focal_from_turn camera_covariance bilinear which_to_trust pipeline how_far"
+    "line_through field_of_view form_image geometric_error nearest_rotation b_from_views "
+    "radial_fit focal_from_turn camera_covariance bilinear which_to_trust pipeline how_far"
 )
 
 

@@ -8,7 +8,6 @@ from cvnotes.show.figures.estimates import draw_plane_error
 from cvnotes.show.figures.ideas import draw_meanings
 from cvnotes.show.figures.images import draw_corners, draw_image, draw_points
 from cvnotes.show.figures.lines import draw_lines, draw_segments
-from cvnotes.show.figures.quality import draw_residuals
 from cvnotes.show.links import chain
 from cvnotes.show.picture import Picture, show
 from cvnotes.show.projects import eight_projects
@@ -46,7 +45,6 @@ __all__ = [
     # chapter 3: how an image is formed
     # chapter 4: lenses
     # chapters 6, 7 and 9: estimates
-    "draw_residuals",
     "draw_plane_error",
     # chapter 7: its strip, the picture of J, a cube on the board
     "chain",

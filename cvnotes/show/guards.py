@@ -64,19 +64,6 @@ def thing(x: Any, name: str, kind: type[Kind]) -> Kind:
     return x
 
 
-def calibrated(x: Any) -> None:
-    """Refuse what has no residuals, and so is no calibration.
-
-    Examples
-    --------
-    >>> calibrated("calibration.json")
-    Traceback (most recent call last):
-    cvnotes.base.errors.InputTypeError: calibration: expected a Calibration, got str
-    """
-    if not hasattr(x, "view_rms"):
-        raise InputTypeError(f"calibration: expected a Calibration, got {type(x).__name__}")
-
-
 def one_motion(x: Any, name: str) -> Array:
     """Guard a single rigid motion (4, 4).
 

@@ -32,7 +32,7 @@ _STORIES = (
     "residuals", "enlarged", "hinge", "horizon", "nails", "origin", "similar", "clicks", "zoom",
     "rim", "decentred", "changes", "rail", "protractor", "asks", "divide", "stop", "pixels",
     "rodrigues", "push", "wishes", "bowl", "rows", "parabola", "six", "parallel", "roll",
-    "warp", "poster", "thirteen",
+    "warp", "poster", "thirteen", "imitation",
 )  # fmt: skip
 __all__ = ["NAMES", "pull_points", "explore", "model"]
 NAMES = (*_MODELS, *_STORIES)

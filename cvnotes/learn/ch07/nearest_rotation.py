@@ -78,7 +78,7 @@ MISTAKES = mistakes_in(_steps,
 
 EXERCISE = Exercise(
     name="nearest_rotation",
-    chapter=3,
+    chapter=7,
     title="The nearest rotation",
     task="Give the rotation (3, 3) that is nearest to a matrix M (3, 3), in the sense of the sum "
     "of squared differences.",
