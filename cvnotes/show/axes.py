@@ -93,7 +93,8 @@ def _family() -> list[str]:
     """Tell matplotlib of the course's type, and how to ask for it; the rest has its own."""
     from matplotlib.font_manager import FontProperties, fontManager
 
-    fontManager.addfont(font_file())
+    for face in ("Regular", "Bold"):
+        fontManager.addfont(font_file().with_name(font_file().name.replace("Regular", face)))
     return [FontProperties(fname=font_file()).get_name(), "DejaVu Sans"]
 
 
