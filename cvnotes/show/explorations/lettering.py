@@ -17,9 +17,9 @@ LETTERS = (
     )
     + "ĥ–—…′″√∞≈≤≥≠±−·×←→↑↓"
 )
-# An index is larger than the type's own, to be read at a drawing's size, and there is one of v.
-INDEX = str.maketrans("₀₁₂₃₄ᵤᵥ", "01234uv")
-_SMALLER, _LOWER = 0.75, 0.2  # than the letter before it, in its size
+# Larger than the type's own, to be read at a drawing's size; and it has neither ᵥ nor ᵀ.
+SMALL = str.maketrans("₀₁₂₃₄ᵤᵥ⁻¹²³ᵀ", "01234uv−123T")
+_SMALLER = 0.75  # than the letter before it
 
 
 @lru_cache(maxsize=512)
@@ -57,15 +57,20 @@ def title_strip(words: str, size: tuple[int, int], left: int, scale: int) -> npt
 
 
 def _runs(words: str, size: int) -> list[tuple[tuple[float, float], str, ImageFont.FreeTypeFont]]:
-    """Part words into letters and indices: where each begins, right and down, and its font."""
+    """Part words at indices and exponents: where each part begins, right and down, and its font."""
     runs: list[tuple[tuple[float, float], str, ImageFont.FreeTypeFont]] = []
     x = 0.0
-    for small, letters in groupby(words, lambda letter: ord(letter) in INDEX):
-        part = "".join(letters).translate(INDEX)
-        font = _font(round(_SMALLER * size) if small else size)
-        runs.append(((x, _LOWER * size if small else 0.0), part, font))
+    for lower, letters in groupby(words, _lower):
+        part = "".join(letters).translate(SMALL)
+        font = _font(round(_SMALLER * size) if lower else size)
+        runs.append(((x, lower * size), part, font))
         x += font.getlength(part)
     return runs
+
+
+def _lower(letter: str) -> float:
+    """Return by how much, in its size, a letter stands below the line: an exponent above it."""
+    return 0.2 if letter in "₀₁₂₃₄ᵤᵥ" else -0.3 if letter in "⁻¹²³ᵀ" else 0.0
 
 
 @lru_cache(maxsize=16)

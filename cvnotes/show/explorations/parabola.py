@@ -62,7 +62,7 @@ def _ground() -> Drawn:
 
 def _draw(paper: Paper, values: Values) -> Drawing:
     t, (wide, beside) = values["t"], _NARROW if paper.narrow else _WIDE
-    panel = paper.panel((wide, _HEIGHT), *_SHOWN, "the cost rᵀr over t (mm), and its parabola")
+    panel = paper.panel((wide, _HEIGHT), *_SHOWN, "the cost over t (mm), and its parabola")
     panel.image(_ground())
     (left, right), (top, _) = _SHOWN
     before = np.linspace(_WALL + 1, right, 600)
