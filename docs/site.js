@@ -118,3 +118,69 @@ addEventListener("load", () => {
   addEventListener("beforeprint", fetchAll);
   if (!navigator.connection?.saveData && matchMedia("(min-width: 60rem)").matches) setTimeout(fetchAll, 1500);
 });
+
+// A guess is written where it is asked, kept in this browser, and stands beside the answer below.
+addEventListener("DOMContentLoaded", () => {
+  const PREFIX = `cvnotes ${new URL(document.documentElement.dataset.content_root, location).pathname} guess `;
+  const ASKED = /^guess\("([^"]+)", \.\.\., "((?:[^"\\]|\\.)*)"/m;
+  const TOLD = /It is (.*)\. \(You had not guessed\.\)/;
+  const answers = {}; // by name: the text, and what it says as long as nobody has guessed
+
+  function kept(name, guess) {
+    try {
+      if (guess !== undefined) localStorage.setItem(PREFIX + name, guess);
+      return localStorage.getItem(PREFIX + name);
+    } catch {
+      return guess ?? null; // this page alone knows it
+    }
+  }
+
+  function verdict(guess, truth) {
+    const [, number, unit] = /^([-−\d.,]*\d)?(.*)$/.exec(truth);
+    const off = Number(guess.replace(",", ".")) - Number(number?.replace("−", "-").replace(",", ""));
+    const mine = Number.isNaN(off) ? guess : guess + unit;
+    const far = off ? `Off by ${Number(Math.abs(off).toPrecision(3))}${unit}.` : "Exactly.";
+    const same = guess.trim().toLowerCase() === truth.toLowerCase();
+    return `You guessed ${mine}; it is ${truth}. ${Number.isNaN(off) ? (same ? "Right." : "Now you know.") : far}`;
+  }
+
+  function tell(name, guess) {
+    if (!guess || !answers[name]) return;
+    const { text, before } = answers[name];
+    text.data = before.replace(TOLD, (_, truth) => verdict(guess, truth));
+  }
+
+  function ask(cell, name, question) {
+    const form = document.createElement("form");
+    form.className = "guess";
+    const label = form.appendChild(document.createElement("label"));
+    label.textContent = `Your guess: ${question} `;
+    const field = label.appendChild(document.createElement("input"));
+    Object.assign(field, { maxLength: 40, autocomplete: "off", value: kept(name) ?? "" });
+    const button = form.appendChild(document.createElement("button"));
+    button.textContent = "Keep it";
+    const said = form.appendChild(document.createElement("output"));
+    form.addEventListener("submit", (event) => {
+      event.preventDefault();
+      const guess = field.value.trim();
+      said.textContent = guess ? "Kept. The answer comes further down." : "Write a number, or a word.";
+      if (guess) tell(name, kept(name, guess));
+    });
+    const dots = [...cell.querySelectorAll(".cell_output em")].find((em) => em.textContent.startsWith("Your guess?"));
+    if (dots) dots.closest("p").replaceWith(form);
+    else cell.append(form);
+    const alone = /^guess\(.*\)$/.test(cell.querySelector(".cell_input").textContent.trim());
+    cell.querySelector(".cell_input").hidden = alone;
+  }
+
+  for (const cell of document.querySelectorAll("div.cell")) {
+    const code = cell.querySelector(".cell_input")?.textContent ?? "";
+    const [, asked, question] = ASKED.exec(code) ?? [];
+    const told = /\banswer\("([^"]+)"/.exec(code)?.[1];
+    if (asked) ask(cell, asked, question.replaceAll("\\", ""));
+    const words = told && document.createTreeWalker(cell, NodeFilter.SHOW_TEXT);
+    while (words?.nextNode())
+      if (TOLD.test(words.currentNode.data)) answers[told] = { text: words.currentNode, before: words.currentNode.data };
+  }
+  for (const name of Object.keys(answers)) tell(name, kept(name));
+});

@@ -266,6 +266,30 @@ def test_on_a_telephone_panels_are_stacked_and_a_long_formula_begins_at_its_begi
         assert np.ptp([stored / shown for stored, shown in widths]) < 0.05  # all to one scale
 
 
+def test_each_chapter_keeps_a_guess_and_sets_it_beside_its_answer(site, chromium):
+    page = chromium.new_context().new_page()
+    for path in sorted((site / "notebooks").glob("*.html")):
+        page.goto(path.as_uri())
+        forms = page.locator(".guess")
+        assert forms.count() >= (not path.stem.startswith("more")), path.stem
+        assert page.locator("em", has_text="in place of the dots").count() == 0
+        for form in forms.all():
+            name = form.locator("input")
+            name.fill("7" if path.stem[:2] != "09" else "MORE than 10")
+            form.locator("button").click()
+            assert form.locator("output").inner_text().startswith("Kept")
+        assert page.get_by_text("You had not guessed").count() == 0, path.stem
+        assert page.get_by_text(re.compile("You guessed")).count() == forms.count(), path.stem
+    page.goto((site / "notebooks" / "00_start_here.html").as_uri())  # it is kept for another day
+    assert page.get_by_text("You guessed 7 px; it is 2.1 px. Off by 4.9 px.").count() == 1
+    page.locator(".guess input").fill("2,1")
+    page.keyboard.press("Enter")
+    assert page.get_by_text("You guessed 2,1 px; it is 2.1 px. Exactly.").count() == 1
+    page.goto((site / "notebooks" / "09_your_own_camera.html").as_uri())
+    assert page.get_by_text("it is more than 10. Right.").count() == 1
+    page.context.close()
+
+
 def test_at_1280_px_a_line_of_100_letters_fits_and_what_is_printed_wraps(site, chromium):
     page = chromium.new_page(viewport={"width": 1280, "height": 900})
     longest = 0

@@ -10,7 +10,7 @@ from cvnotes.show.style import CAMERA, ESTIMATED, FAINT, LENS, MUTED, WORLD
 from cvnotes.show.typeface import svg
 
 _WIDE, _TALL, _GAP, _ABOVE = 200, 140, 14, 26
-_STYLE = "text{font:600 15px cvnotes;fill:#333}"
+_STYLE = ".s{font:600 15px cvnotes;fill:#333}"
 _EYE = Camera(
     intrinsics(158, 158, 96, 58), look_at([3.4, -6.0, -5.6], [0.1, 0, -0.5], up=(0, 0, -1))
 )
@@ -39,7 +39,7 @@ def eight_projects() -> Picture:
         width, height = columns * pitch - _GAP + 4, len(drawn) // columns * row
         tiles = [
             f'<g transform="translate({k % columns * pitch + 2} {k // columns * row + _ABOVE})">'
-            f'<text x="2" y="-8">{_NAMES[k]}</text>'
+            f'<text class="s" x="2" y="-8">{_NAMES[k]}</text>'
             f'<clipPath id="tile{k}"><rect width="{_WIDE}" height="{_TALL}" rx="6"/></clipPath>'
             f'<g clip-path="url(#tile{k})" fill="none" stroke-linejoin="round">{each}</g>'
             f'<rect width="{_WIDE}" height="{_TALL}" rx="6" fill="none" stroke="{FAINT}"/></g>'

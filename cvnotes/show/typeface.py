@@ -18,6 +18,7 @@ _PLACES = (
     ("font_source_sans_pro", "files/SourceSansPro-Regular.ttf"),
     ("matplotlib", "mpl-data/fonts/ttf/DejaVuSans.ttf"),  # where the first cannot be installed
 )
+_NOT_DRAWN = ["FFTM", "GPOS", "GSUB", "GDEF", "BASE", "DSIG", "meta"]
 _X = 0.547  # of DejaVu Sans, to which the sizes in the code belong: height of its x in em
 
 
@@ -61,19 +62,23 @@ def svg(
 ) -> bytes:
     """Return a drawing of its own, in px: as an image it may ask for no file, and brings its type.
 
-    Its words have the family ``cvnotes``, and 400 or 600 as weight.
+    Its words have the family ``cvnotes``; those of class ``s``, which are strong, have weight 600.
 
     Examples
     --------
     >>> svg("<text>±</text>", 90, 20, style="text{font:14px cvnotes}")[:50]
     b'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0'
     """
-    letters = "".join(sorted(set("".join(re.findall(">([^<]+)<", body)))))
-    faces = "".join(
-        f"@font-face{{font-family:cvnotes;font-weight:{weight};"
-        f"src:url(data:font/woff;base64,{_embedded(name, letters)})}}"
-        for weight, name in ((400, "Regular"), (600, "Semibold"))
-    )
+    written = re.findall(r"<text([^>]*)>([^<]+)", body)
+    faces = ""
+    for weight, name in ((400, "Regular"), (600, "Semibold")):
+        letters = {
+            c for how, words in written if ('class="s"' in how) == (weight == 600) for c in words
+        }
+        faces += (
+            f"@font-face{{font-family:cvnotes;font-weight:{weight};"
+            f"src:url(data:font/woff;base64,{_embedded(name, ''.join(sorted(letters)))})}}"
+        )
     size = f'width="{round(scale * width)}" height="{round(scale * height)}"'
     return (
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{left} 0 {width} {height}" '
@@ -85,7 +90,7 @@ def svg(
 def _embedded(face: str, letters: str) -> str:
     """Return some letters of a face in base 64."""
     source = font_file().with_name(font_file().name.replace("Regular", face))
-    cut = subset_of(source, letters, flavor="woff", hinting=False, layout_features=["kern"])
+    cut = subset_of(source, letters, flavor="woff", hinting=False, drop_tables=_NOT_DRAWN)
     return base64.b64encode(cut).decode()
 
 
@@ -97,7 +102,8 @@ def subset_of(source: Path, letters: str, **how: Any) -> bytes:
     from fontTools import subset
 
     logging.getLogger("fontTools").setLevel(logging.WARNING)
-    options: Any = subset.Options(drop_tables=["FFTM"], name_IDs=[0, 13, 14], **how)
+    kept = {"drop_tables": ["FFTM"], "name_IDs": [0, 13, 14]}
+    options: Any = subset.Options(**(kept | how))
     font = subset.load_font(str(source), options)
     cutter: Any = subset.Subsetter(options)
     cutter.populate(text=letters)
