@@ -4625,7 +4625,7 @@ def test_the_plain_svd_of_many_pictures_is_where_it_is_drawn_and_what_it_pays_is
     wanted = [[0.5 * np.mean(depth**2), 0], pays]
     assert np.allclose(bill(at), wanted, atol=0.01)
     assert said[-3:] == pytest.approx([*pays, wanted[0][0]], abs=0.015)
-    below = drawing.picture[TITLE + 210 + MARGIN + TITLE + MARGIN :]
+    below = drawing.picture[TITLE + 300 + MARGIN + TITLE + MARGIN :]
     places = (m + 10 * (drawn - m) - [190, 161.8]) * 374 / 79
     for k in (0, 8, 53, 27):  # corners of the net that is enlarged, and one within it
         u, v = np.rint(places[k]).astype(int) + [MARGIN, 0]
@@ -4663,11 +4663,11 @@ def test_the_door_is_drawn_where_the_plain_svd_has_the_board_and_hangs_on_the_or
     assert told == pytest.approx(
         [true[:, 2].mean() / origin[2], blue[:, 2].mean() / origin[2]], abs=5e-3
     )
-    scale = 754 / 4130  # px for each mm
+    scale = 754 / 1650  # px for each mm
     side = drawing.picture[TITLE:, MARGIN:]
 
     def near(place):
-        u, v = np.rint(scale * (place[[2, 1]] - [-130, -200]) + [0, 105]).astype(int)
+        u, v = np.rint(scale * (place[[2, 1]] - [2100, -500])).astype(int)
         return side[v - 2 : v + 3, u - 2 : u + 3]
 
     for place, inks in ((true, (IDEAL, LENS)), (blue, (LENS,))):

@@ -121,9 +121,9 @@ def _course(paper: Paper, size: tuple[int, int], powers: Array) -> Panel:
     panel = paper.panel(size, (left, 1.04 * _STEPS), (4.3, -0.5), "RMS (px) after each step")
     panel.ticks(x=np.arange(1, _STEPS + 1), size=11)
     for power in range(5):
-        panel.line([[left, power], [2 * _STEPS, power]], "#DDDDDD", 0.5)
+        panel.line(np.array([[left, power], [2 * _STEPS, power]]), "#DDDDDD", 0.5)
         panel.text([0.95 * left, power], f"{10**power:,}", anchor="lm", size=11)
-    curve = np.column_stack([range(_STEPS + 1), powers])
+    curve = np.column_stack([np.arange(_STEPS + 1), powers])
     panel.line(curve, ESTIMATED, 2.4)
     panel.mark(curve[1:], "estimated", 6)
     panel.mark(curve[0], "world", 6)
