@@ -85,8 +85,7 @@ def test_the_keyboard_alone_reaches_all_and_is_held_nowhere(page, live_site):
     assert focused["kind"] == "body", reached[-5:]  # and goes on at the browser's own buttons
     kinds = [kind for kind, _ in reached]
     explored = [
-        model(name)
-        for name in ("homography", "ellipse", "origin", "swing", "parabola", "valley", "ransac")
+        model(name) for name in ("homography", "ellipse", "origin", "swing", "parabola", "ransac")
     ]
     assert (
         kinds.count("range")

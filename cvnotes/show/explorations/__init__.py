@@ -26,7 +26,7 @@ _MODELS = ("projection", "camera", "lens", "noise", "tilt")
 _STORIES = (
     "straighten", "stands", "pairs", "ring", "maps", "ruler", "eye", "rod", "shadows", "forged",
     "triangle", "formation", "pinhole", "dolly", "walks", "gimbal", "fisheye", "newton",
-    "clouds", "subpixel", "votes", "twins", "ellipse", "valley", "ransac", "homography", "fold",
+    "clouds", "subpixel", "votes", "twins", "ellipse", "ransac", "homography", "fold",
     "folds", "finding", "moved", "eleventh", "columns", "between", "rings", "plane", "epipolar",
     "rectification", "disparity", "depth", "cube", "conic", "seam", "swing", "frame", "meet",
     "residuals", "enlarged", "hinge", "horizon", "nails", "origin", "similar", "clicks", "zoom",

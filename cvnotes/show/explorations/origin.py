@@ -22,8 +22,8 @@ from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED, WORLD, mixed
 _BOARD, _NOISE, _TIMES = course.board(), 0.5, 10  # px; shifts are drawn so many times
 _FARTHEST = 540  # mm, of the origin from the board's middle
 _ALONG = np.array([-0.741, -0.6715])  # that way on the board: up and to the left, of length 1
-_WIDE, _NARROW, _HALF = (754, 210), (374, 150), (374, 210)  # px
-_AWAY, _MIDDLE = (-130.0, 4000.0), -200.0  # mm of depth; of height, in the middle of the picture
+_WIDE, _NARROW, _HALF = (754, 300), (374, 190), (374, 210)  # px
+_AWAY, _HIGH = (2100.0, 3750.0), -500.0  # mm of depth; of height, the upper end of the picture
 _SEEN = (190.0, 269.0), (161.8, 206.16)  # px, u and v
 _BILL = 0.6  # px², as long as a bar can be
 _PALE, _GREY = "#E4E4E4", "#A9A9A9"
@@ -36,7 +36,7 @@ def origin_model() -> Model:
                 "along the board, upwards and to the left"),
     )  # fmt: skip
     about = (
-        "A camera and a far board from the side: where the board is, and where the plain DLT "
+        "A far board from the side: where the board is, and where the plain DLT "
         "believes it, turned about the origin of its coordinates. Below, two nets through its "
         "corners, their shifts enlarged: of the plain DLT, and of the normalised one; and what "
         "the misses cost, of the true homography and of the plain DLT's."
@@ -145,9 +145,9 @@ def _draw(paper: Paper, values: Values) -> Drawing:
 def _side(paper: Paper, at: Array) -> tuple[Panel, list[float]]:
     """Draw the board from the side; return with it how far its middle is, in the origin's depth."""
     width, height = _NARROW if paper.narrow else _WIDE
-    half = (_AWAY[1] - _AWAY[0]) * height / width / 2
-    high, low = _MIDDLE - half, _MIDDLE + half
-    title = "the camera and the board, from the side"
+    high = _HIGH - 45 * paper.narrow
+    low = high + (_AWAY[1] - _AWAY[0]) * height / width
+    title = "the far board from the side, and depths"
     panel = paper.panel((width, height), _AWAY, (high, low), title)
     hinge, *boards = (one[..., [2, 1]] for one in believed(at))
     middles = [board.mean(axis=0) for board in boards]
@@ -160,8 +160,8 @@ def _side(paper: Paper, at: Array) -> tuple[Panel, list[float]]:
         draw_net(panel, board, _BOARD, colour, 1)
         below = [middle[0], low - up * panel.pixel]
         panel.text(below, f"{name} {ratio:.2f}", colour, anchor="mm")
-    panel.mark([0, 0], "camera", 9, looks=(1, 0))
-    panel.text([0, low - 11 * panel.pixel], "camera", MUTED, anchor="lm")
+    broken = np.array([_AWAY[0], middles[0][1] * _AWAY[0] / middles[0][0]])
+    panel.text(broken + panel.pixel * np.array([8, 14]), "← camera, 3 m", MUTED, anchor="lm")
     panel.mark(hinge, "world", 6)
     panel.text([hinge[0], low - 45 * panel.pixel], "origin 1.00", WORLD, anchor="mm")
     panel.grip("hinge", "the origin, which is the hinge", hinge, 10)
@@ -169,7 +169,7 @@ def _side(paper: Paper, at: Array) -> tuple[Panel, list[float]]:
 
 
 def _nets(paper: Paper, net: Array) -> Panel:
-    panel = paper.panel(_HALF, *_SEEN, f"blue: plain; orange: normalised; shifts × {_TIMES}")
+    panel = paper.panel(_HALF, *_SEEN, f"blue: the DLT; orange: its cure; shifts × {_TIMES}")
     m = corners()[1]
     draw_squares(panel, m, _BOARD, _PALE)
     for one, colour in ((net, LENS), (normalised(), ESTIMATED)):

@@ -7,15 +7,15 @@ import numpy as np
 from cvnotes.base import Array
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Drawn, Panel, Paper
-from cvnotes.show.explorations.valley import floor_A, measured, rms_curve, rms_panel
-from cvnotes.show.style import ESTIMATED, LENS, MUTED, rgb
+from cvnotes.show.explorations.swing import floor_A, rows_of_tiles
+from cvnotes.show.style import ESTIMATED, LENS, MUTED, mixed, rgb
 
 _NEAREST, _FARTHEST = -190, 630  # mm, of the start
 _SHOWN = (-760.0, 730.0), (210_000.0, -30_000.0)  # t in mm, the cost in px²
 _STEPS, _HEIGHT = 5, 340  # px
 _WALL = -450  # mm: beyond it row 1 would lie behind the camera
 _WIDE, _NARROW = (544, 204), (374, 374)  # px, of the cost and of the RMS
-_GROUND = "#8FA3BD", "#EDF1F6"  # low and high, as in the chapter's valley
+_GROUND = "#8FA3BD", "#EDF1F6"  # low and high
 _APART = 16  # px between steps that have a number each
 
 
@@ -23,17 +23,19 @@ def parabola_model() -> Model:
     """Make the model of a floor believed t mm too far away, and of the steps that find this t."""
     settings = (
         Setting("t", "t (mm)", _NEAREST, _FARTHEST, 1, 200, "where the parabola touches the cost"),
+        Setting("mu", "μ", 0, 0.3, 0.01, 0, "the damping: it makes the parabola narrower"),
     )
     about = (
         "The cost over one unknown t as a hilly ground, a parabola that touches it where t is, and "
-        "the steps of Gauss and Newton from there on. Beside it their RMS."
+        "the steps to its lowest point from there on, damped or not. Beside it their RMS."
     )
     return Model("parabola", about, settings, _draw, {"t": lambda _, at: {"t": float(at[0])}})
 
 
 def residuals(t: Array | float) -> tuple[Array, Array]:
     """Return r (..., 6), predicted minus seen by the middle tile of each row, and J = dr/dt."""
-    tiles, seen = measured()
+    tiles, exact = rows_of_tiles()
+    seen = exact + np.random.default_rng(6).normal(scale=1.0, size=exact.shape)
     distance = tiles[3::7, 1] + np.asarray(t)[..., None]
     _, alpha, v0 = floor_A()[1]
     return v0 + alpha * 300 / distance - seen[3::7, 1], -alpha * 300 / distance**2
@@ -44,12 +46,12 @@ def cost(t: Array | float) -> Array:
     return np.asarray(np.sum(residuals(t)[0] ** 2, axis=-1))
 
 
-def walk(t: float) -> Array:
-    """Return t before the first step and after each."""
+def walk(t: float, mu: float) -> Array:
+    """Return t before the first step and after each, with so much damping in all of them."""
     way = [t]
     for _ in range(_STEPS):
         r, J = residuals(way[-1])
-        way.append(way[-1] - float(J @ r / (J @ J)))
+        way.append(way[-1] - float(J @ r / (J @ J + mu)))
     return np.array(way)
 
 
@@ -61,7 +63,7 @@ def _ground() -> Drawn:
 
 
 def _draw(paper: Paper, values: Values) -> Drawing:
-    t, (wide, beside) = values["t"], _NARROW if paper.narrow else _WIDE
+    (t, mu), (wide, beside) = values.values(), _NARROW if paper.narrow else _WIDE
     panel = paper.panel((wide, _HEIGHT), *_SHOWN, "the cost over t (mm), and its parabola")
     panel.image(_ground())
     (left, right), (top, _) = _SHOWN
@@ -69,12 +71,15 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     curve = np.column_stack([before, np.minimum(cost(before), 3 * top)])
     panel.polygons([np.vstack([curve, [right, 3 * top]])], "white")
     panel.line(curve, LENS, 2.4)
-    at, way, (r, J) = np.array([t, cost(t)]), walk(t), residuals(t)
+    at, way, (r, J) = np.array([t, cost(t)]), walk(t, mu), residuals(t)
     across = np.linspace(left, right, 400)
-    touching = np.sum((r + J * (across - t)[:, None]) ** 2, axis=-1)
+    free, touching = (at[1] + (2 * J @ r + (J @ J + more) * (across - t)) * (across - t)
+                      for more in (0, mu))  # fmt: skip
+    if mu:
+        panel.line(np.column_stack([across, free]), mixed("#FFFFFF", ESTIMATED, 0.6), 1.4, dash=5)
     panel.line(np.column_stack([across, touching]), ESTIMATED, 2.2)
     _name(panel, float(np.interp(-550, across, touching)))
-    lowest = np.array([way[1], np.sum((r + J * (way[1] - t)) ** 2)])
+    lowest = np.array([way[1], at[1] + J @ r * (way[1] - t)])
     up = np.array([way[1], min(float(cost(way[1])), top)])
     panel.line(np.stack([lowest, up]), ESTIMATED, 1.2, dash=3)
     _number_steps(panel, way)
@@ -82,11 +87,8 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     panel.mark(at, "world", 9)
     panel.grip("t", "t, where the parabola touches", at, 4)
     rms = np.sqrt(cost(way) / len(r))
-    course = rms_panel(paper, (beside, 200 if paper.narrow else _HEIGHT), _STEPS)
-    rms_curve(course, rms.tolist(), ESTIMATED, 2.4)
-    course.mark(np.column_stack([range(1, 6), np.log10(rms[1:])]), "estimated", 6)
-    course.mark([0, np.log10(rms[0])], "world", 6)
-    return Drawing(paper.join((panel, course)), _sentence(way, rms))
+    course = _course(paper, (beside, 200 if paper.narrow else _HEIGHT), np.log10(rms))
+    return Drawing(paper.join((panel, course)), _sentence(way, rms, mu))
 
 
 def _name(panel: Panel, passing: float) -> None:
@@ -113,11 +115,27 @@ def _number_steps(panel: Panel, way: Array) -> None:
             last = here
 
 
-def _sentence(way: Array, rms: Array) -> str:
+def _course(paper: Paper, size: tuple[int, int], powers: Array) -> Panel:
+    """Draw the RMS after each step, as powers of ten."""
+    left = -46 * _STEPS / (size[0] - 60)  # there the numbers stand
+    panel = paper.panel(size, (left, 1.04 * _STEPS), (4.3, -0.5), "RMS (px) after each step")
+    panel.ticks(x=np.arange(1, _STEPS + 1), size=11)
+    for power in range(5):
+        panel.line(np.array([[left, power], [2 * _STEPS, power]]), "#DDDDDD", 0.5)
+        panel.text([0.95 * left, power], f"{10**power:,}", anchor="lm", size=11)
+    curve = np.column_stack([np.arange(_STEPS + 1), powers])
+    panel.line(curve, ESTIMATED, 2.4)
+    panel.mark(curve[1:], "estimated", 6)
+    panel.mark(curve[0], "world", 6)
+    return panel
+
+
+def _sentence(way: Array, rms: Array, mu: float) -> str:
     t, lowest = (f"{round(x)}".replace("-", "−") for x in way[:2])
+    damped = f" and μ = {mu:.2f}" if mu else ""
     said = (
-        f"At t = {t} mm the curve is replaced by a parabola; the step goes to its lowest point, "
-        f"{lowest} mm. "
+        f"At t = {t} mm{damped} the curve is replaced by a parabola; the step goes to its lowest "
+        f"point, {lowest} mm. "
     )
     if way[1] < _WALL:
         rows = "row 1 lies" if way[1] > -600 else "rows 1 and 2 lie"

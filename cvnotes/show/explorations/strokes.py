@@ -1,7 +1,6 @@
-"""Strokes: straight ones cut to a rectangle, and into dashes; a circle; and lines of a ground."""
+"""Strokes: straight ones cut to a rectangle, and into dashes; and a circle."""
 
 import numpy as np
-import numpy.typing as npt
 
 from cvnotes.base import Array, clipped_segments
 
@@ -32,12 +31,6 @@ def dashed(pairs: Array, length: float) -> Array:
     part = (np.stack([start, start + length], -1) / reach[which, None]).clip(0, 1)
     part, which = part[part[:, 1] > part[:, 0]], which[part[:, 1] > part[:, 0]]
     return np.asarray(pairs[which, :1] + part[..., None] * way[which, None])
-
-
-def contours(height: Array, levels: npt.ArrayLike, reach: float) -> Array:
-    """Return the ink (h, w), from 0 to 1, of lines of equal height, so many px to either side."""
-    off = np.min([np.abs(height - level) for level in np.ravel(levels)], axis=0)
-    return np.asarray(np.clip(reach - off / np.hypot(*np.gradient(height)).clip(1e-9), 0, 1))
 
 
 def cut(corners: Array, inside: Array) -> Array:

@@ -5,12 +5,13 @@ from functools import lru_cache
 import numpy as np
 
 from cvnotes.base import Array
+from cvnotes.camera import Camera
 from cvnotes.homography import dlt, refine_homography
+from cvnotes.pictures import course
 from cvnotes.projective import apply
 from cvnotes.show.explorations.model import Drag, Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Drawn, Panel, Paper
 from cvnotes.show.explorations.strokes import circle
-from cvnotes.show.explorations.valley import floor_A, rows_of_tiles
 from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED, mixed
 
 _SHOWN = (115.0, 1495.0), (525.0, 1200.0)  # px, u and v: below, the sensor ends
@@ -44,6 +45,23 @@ def swing_model() -> Model:
 
     drags = {f"row {row}": pulled(row) for row in range(1, 7)}
     return Model("swing", about, settings, _draw, drags)
+
+
+@lru_cache(maxsize=1)
+def rows_of_tiles() -> tuple[Array, Array]:
+    """Return the corners (42, 2) of six rows of tiles on chapter 6's floor, and their pixels.
+
+    The sensor has 1600 × 1200 pixels, so that the nearest row is seen, too.
+    """
+    G = np.array([[1.0, 0, 0, 0], [0, 0, -1, 300], [0, 1, 0, 0], [0, 0, 0, 1]])
+    rows, columns = (450, 600, 900, 1500, 3000, 6000), range(-300, 301, 100)
+    tiles = np.array([[x, y] for y in rows for x in columns], float)
+    return tiles, Camera(floor_A(), G).project(np.insert(tiles, 2, 0, axis=1))
+
+
+def floor_A() -> Array:
+    """Return A (3, 3) of the camera over the floor: as the course's, with a larger sensor."""
+    return np.asarray(course.camera().A + [[0, 0, 480], [0, 0, 360], [0, 0, 0]])
 
 
 @lru_cache(maxsize=16)
