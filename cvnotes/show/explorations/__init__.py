@@ -26,8 +26,8 @@ _MODELS = ("projection", "camera", "lens", "noise", "tilt")
 _STORIES = (
     "straighten", "stands", "pairs", "ring", "maps", "ruler", "eye", "rod", "shadows", "forged",
     "triangle", "formation", "pinhole", "dolly", "walks", "gimbal", "fisheye", "newton",
-    "clouds", "subpixel", "votes", "twins", "ellipse", "ransac", "homography", "fold",
-    "folds", "finding", "moved", "eleventh", "columns", "between", "rings", "plane", "epipolar",
+    "clouds", "subpixel", "votes", "twins", "ellipse", "ransac", "homography", "fold", "folds",
+    "finding", "moved", "eleventh", "columns", "between", "rings", "plane", "epipolar",
     "rectification", "disparity", "depth", "cube", "conic", "seam", "swing", "frame", "meet",
     "residuals", "enlarged", "hinge", "horizon", "nails", "origin", "similar", "clicks", "zoom",
     "rim", "decentred", "changes", "rail", "protractor", "asks", "divide", "stop", "pixels",
