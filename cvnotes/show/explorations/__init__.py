@@ -25,7 +25,7 @@ _MODELS = ("projection", "camera", "lens", "noise", "tilt")
 # or of what the course itself has photographed or thought of.
 _STORIES = (
     "straighten", "stands", "pairs", "ring", "maps", "ruler", "eye", "rod", "shadows", "forged",
-    "triangle", "formation", "pinhole", "dolly", "walks", "gimbal", "fisheye", "newton",
+    "triangle", "formation", "pinhole", "dolly", "walks", "gimbal", "fisheye",
     "clouds", "subpixel", "votes", "twins", "ellipse", "valley", "ransac", "homography", "fold",
     "folds", "finding", "moved", "eleventh", "columns", "between", "rings", "plane", "epipolar",
     "rectification", "disparity", "depth", "cube", "conic", "seam", "swing", "frame", "meet",
