@@ -31,8 +31,8 @@ def decentred_model() -> Model:
     about = (
         "A grid through a lens whose second piece of glass, light blue, is shifted by δ: its "
         "tangential terms alone, each point moved three times as far. A ruler shows by how much a "
-        "line across δ bows. Beside it both pieces from the side, with two rays of the centred lens, "
-        "dashed, and of the shifted one; and the grid on a tilted sensor."
+        "line across δ bows. Beside it both pieces from the side, with two rays of the centred "
+        "lens, dashed, and of the shifted one; and the grid on a tilted sensor."
     )
 
     def pulled(_: Values, at: Array) -> Values:

@@ -75,7 +75,8 @@ def _draw(camera: Camera, paper: Paper, values: Values) -> Drawing:
     grid.image(bent_room(lens, grid.x, grid.y, _SIZE, paper.sharpness, 1))
     _draw_edge(grid, lens)
     draw_fold(grid, lens)
-    curve = paper.panel(_SIZE, (0, _RADIUS), (1.2, -0.2), "observed over ideal radius, in focal lengths")
+    title = "observed over ideal radius, in focal lengths"
+    curve = paper.panel(_SIZE, (0, _RADIUS), (1.2, -0.2), title)
     corners = camera_corners(camera)[[0, 1, 2, 3, 0]]
     for colour, width in (("#FFFFFF", 3.5), (CAMERA, 2)):
         grid.line(corners, colour, width)

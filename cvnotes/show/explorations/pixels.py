@@ -103,7 +103,5 @@ def _draw_row(panel: Panel, length: float, du: float) -> None:
     side = 1 if length >= 0 else -1
     panel.text([-0.04 * side, 0.74], u0, CAMERA, anchor="rm" if side > 0 else "lm", size=14)
     out = side if abs(length) < 1.1 else -side  # at the border it stands inside
-    panel.text(
-        [length + 0.04 * out, 0.74], u, ESTIMATED, anchor="lm" if out > 0 else "rm", size=14
-    )
+    panel.text([length + 0.04 * out, 0.74], u, ESTIMATED, anchor="lm" if out > 0 else "rm", size=14)
     panel.mark([length, 0], "estimated", 8)
