@@ -86,7 +86,7 @@ def _draw(paper: Paper, values: Values) -> Drawing:
 
 def _aside(paper: Paper, delta: float) -> Panel:
     """Draw both pieces of glass from the side, and how the shift of one turns two rays."""
-    panel = paper.panel(_SIDE, (0, _SIDE[0]), (0, _SIDE[1]), "from the side, along δ: also 3 times")
+    panel = paper.panel(_SIDE, (0, _SIDE[0]), (0, _SIDE[1]), "from the side; dashed: not shifted")
     panel.line([[0, _AXIS], [_SIDE[0], _AXIS]], "#999999", 1, dash=4)
     centre = np.array([_SECOND, _AXIS + _LONG * delta])
     turn = np.linspace(-1, 1, 31)
