@@ -25,12 +25,12 @@ _MODELS = ("projection", "camera", "lens", "noise", "tilt")
 # or of what the course itself has photographed or thought of.
 _STORIES = (
     "straighten", "stands", "pairs", "ring", "maps", "ruler", "eye", "rod", "shadows", "forged",
-    "triangle", "formation", "pinhole", "dolly", "walks", "gimbal", "fisheye", "newton",
-    "clouds", "subpixel", "votes", "twins", "ellipse", "ransac", "homography", "fold", "folds",
-    "finding", "moved", "eleventh", "columns", "between", "rings", "plane", "epipolar",
-    "rectification", "disparity", "depth", "cube", "conic", "seam", "swing", "frame", "meet",
-    "residuals", "enlarged", "hinge", "horizon", "nails", "origin", "similar", "clicks", "zoom",
-    "rim", "decentred", "changes", "rail", "protractor", "asks", "divide", "stop", "pixels",
+    "triangle", "formation", "pinhole", "dolly", "walks", "gimbal", "fisheye", "clouds",
+    "subpixel", "votes", "twins", "ellipse", "ransac", "homography", "fold", "folds", "finding",
+    "moved", "eleventh", "columns", "between", "rings", "plane", "epipolar", "rectification",
+    "disparity", "depth", "cube", "conic", "seam", "swing", "frame", "meet", "residuals",
+    "enlarged", "hinge", "horizon", "nails", "origin", "similar", "clicks", "zoom", "rim",
+    "decentred", "changes", "rail", "protractor", "asks", "divide", "stop", "pixels",
     "rodrigues", "push", "wishes", "bowl", "rows", "parabola", "six", "parallel", "roll",
     "warp", "poster", "thirteen", "imitation",
 )  # fmt: skip

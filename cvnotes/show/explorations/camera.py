@@ -193,18 +193,22 @@ def _draw_axes(panel: Panel, start: Array, axes: Array, names: str, colour: str)
 def _draw_T(panel: Panel, at: Array, T: Array) -> None:
     """Draw T, from the camera to the world's origin, and its three steps along x, y and z."""
     panel.line(at, CAMERA, 3, dash=5)
-    panel.arrows(at[0], at[3] - at[0], IDEAL, 2)
-    (x, y), middle = _along(panel, at[[0, 3]]), at[[0, 3]].mean(axis=0)
+    x, y = _along(panel, at[[0, 3]])
+    tip = at[3] - 8 * panel.pixel * np.array([x, y])  # beside the mark of the origin
+    for ink, width in (("#FFFFFF", 6), (IDEAL, 3)):  # a head that is seen on black squares
+        panel.arrows(at[0], tip - at[0], ink, width)
+        tip = tip - 3 * panel.pixel * np.array([x, y])
+    middle = at[[0, 3]].mean(axis=0)
     across = np.array([y, -x])
     across = across * (1 if across @ (middle - at[1:3].mean(axis=0)) > 0 else -1)
     anchor = "lmr"[1 - int(np.rint(1.2 * across[0]))] + "m"
     panel.text(middle + 11 * panel.pixel * across, "T", IDEAL, anchor=anchor, size=17)
-    for ends, step in zip(pairwise(at), T, strict=True):
+    for name, ends, step in zip("xyz", pairwise(at), T, strict=True):
         x, y = _along(panel, np.array(ends))
         if np.linalg.norm(ends[1] - ends[0]) > 25 * panel.pixel:  # else there is no room
             aside = np.array([y, -x]) * (1 if across @ [y, -x] < 0 else -1)
             beside = (ends[0] + ends[1]) / 2 + 16 * panel.pixel * aside
-            panel.text(beside, f"{step:.0f}".replace("-", "−"), CAMERA, anchor="mm", size=14)
+            panel.text(beside, f"{name} {step:.0f}".replace("-", "−"), CAMERA, anchor="mm", size=14)
 
 
 def _along(panel: Panel, ends: Array) -> Array:

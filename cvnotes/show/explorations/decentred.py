@@ -15,27 +15,28 @@ _SIZE, _TILTED, _X = (470, 470), (330, 260), 0.76  # px of the panels; how far b
 _EXTENT, _TIMES = 0.5, 3  # of the grid; each point is moved so many times as far
 _BESIDE = 0.58  # how far from the centre three points are pointed out, outside of the grid
 _RULER = 0.35, 0.5  # how far along p it lies, and how far it reaches to both sides
-_K, _RIM = 0.25, 0.46  # of the glass: how strongly it pulls inwards, p = k δ; its radius
+_KAPPA, _RIM = 0.25, 0.46  # of the glass: how strongly it pulls inwards, p = κ δ; its radius
 _F = 800  # px, in which a bow is told
 _SIDE, _GLASS, _PLATE = (330, 182), "#E4F2FB", "#A6A6A6"  # of the panel from the side, in px
-_FIRST, _SECOND, _SENSOR, _AXIS = 70, 150, 290, 70  # px: where two pieces of glass stand
-_LONG, _FOCAL = 200, 260  # px: a δ of 1; the focal length of the second
+_FIRST, _SECOND, _SENSOR, _AXIS = 60, 150, 290, 91  # px: where two pieces of glass stand
+_SLOPE, _FOCAL, _LONG = 0.32, 230, 100  # of the two rays; px: of the plane z = 1, and a δ of 1
 
 
 def decentred_model() -> Model:
     """Make the model of a grid through a lens with tangential terms alone."""
     settings = (
-        Setting("p1", "p₁", -0.05, 0.05, 0.001, 0.04, "p along y: a quarter of the shift δ"),
-        Setting("p2", "p₂", -0.05, 0.05, 0.001, 0, "p along x: a quarter of the shift δ"),
+        Setting("down", "δ down", -0.2, 0.2, 0.004, 0.16, "the shift of the glass: 4 p₁"),
+        Setting("right", "δ to the right", -0.2, 0.2, 0.004, 0, "the shift of the glass: 4 p₂"),
     )
     about = (
         "A grid through a lens whose second piece of glass, light blue, is shifted by δ: its "
         "tangential terms alone, each point moved three times as far. A ruler shows by how much a "
-        "line across δ bows. Beside it both pieces from the side, and the grid on a tilted sensor."
+        "line across δ bows. Beside it both pieces from the side, with two rays of the centred "
+        "lens, dashed, and of the shifted one; and the grid on a tilted sensor."
     )
 
     def pulled(_: Values, at: Array) -> Values:
-        return {"p1": float(at[1] * _K), "p2": float(at[0] * _K)}
+        return {"down": float(at[1]), "right": float(at[0])}
 
     return Model("decentred", about, settings, _draw, {"glass": pulled})
 
@@ -57,12 +58,10 @@ def bow(line: Array) -> float:
 
 
 def _draw(paper: Paper, values: Values) -> Drawing:
-    p = np.array([values["p2"], values["p1"]])
-    delta, high = p / _K, _X * _TILTED[1] / _TILTED[0]
-    lens = paper.panel(
-        _SIZE, (-_X, _X), (-_X, _X), "a decentred lens, each point moved 3 times as far"
-    )
-    sensor = paper.panel(_TILTED, (-_X, _X), (-high, high), "a tilted sensor, also 3 times as far")
+    delta = np.array([values["right"], values["down"]])
+    p, high = _KAPPA * delta, _X * _TILTED[1] / _TILTED[0]
+    lens = paper.panel(_SIZE, (-_X, _X), (-_X, _X), "what the shift adds, 3 times too long")
+    sensor = paper.panel(_TILTED, (-_X, _X), (-high, high), "a tilted sensor, 3 times too much")
     rim = delta + _RIM * circle(73)
     lens.polygons([rim], _GLASS)
     lens.line(rim, CAMERA, 1.5)
@@ -76,37 +75,46 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     lens.grip("glass", "the middle of the second piece of glass", delta, 1)
     x, y = delta.round(3) + 0.0
     words = (
-        f"δ = ({x:g}, {y:g}), p₁ = {values['p1']:.3f}, p₂ = {values['p2']:.3f}: at a focal length "
+        f"δ = ({x:g}, {y:g}), p₁ = {p[1]:.3f}, p₂ = {p[0]:.3f}: at a focal length "
         f"of {_F} px the line across δ bows by {bows[0]:.1f} px, and by {bows[1]:.1f} px on the "
         "tilted sensor."
     )
-    return Drawing(paper.join((lens, [_aside(paper, float(np.hypot(*delta))), sensor])), words)
+    side = -1 if tuple(delta[::-1]) < (0, 0) else 1  # as in the picture: down is down
+    aside = _aside(paper, side * float(np.hypot(*delta)))
+    return Drawing(paper.join((lens, [aside, sensor])), words)
 
 
 def _aside(paper: Paper, delta: float) -> Panel:
-    """Draw two pieces of glass from the side, and the ray on the axis of the first."""
-    panel = paper.panel(_SIDE, (0, _SIDE[0]), (0, _SIDE[1]), "from the side: the second is shifted")
+    """Draw both pieces of glass from the side, and how the shift of one turns two rays."""
+    panel = paper.panel(_SIDE, (0, _SIDE[0]), (0, _SIDE[1]), "from the side; dashed: not shifted")
     panel.line([[0, _AXIS], [_SIDE[0], _AXIS]], "#999999", 1, dash=4)
     centre = np.array([_SECOND, _AXIS + _LONG * delta])
     turn = np.linspace(-1, 1, 31)
-    side = np.column_stack([13 * (1 - turn**2), 44 * turn])
-    for at in np.array([_FIRST, _AXIS]), centre:
+    for at, tall in (np.array([_FIRST, _AXIS]), 34), (centre, 60):
+        side = np.column_stack([13 * (1 - turn**2), tall * turn])
         face = np.concatenate([at + side, (at + side * [-1, 1])[::-1]])
         panel.polygons([face], _GLASS)
         panel.line(face[[*range(len(face)), 0]], CAMERA, 1.5)
-    panel.line([[_SENSOR, 8], [_SENSOR, _SIDE[1] - 8]], _PLATE, 5)
-    panel.line(axis_ray(delta), LENS, 2.4)
-    panel.mark(axis_ray(delta)[-1], "lens", 6)
+    panel.line([[_SENSOR, 5], [_SENSOR, _SIDE[1] - 5]], _PLATE, 5)
+    for slope in (-_SLOPE, _SLOPE):
+        panel.line(side_ray(slope, 0)[1:], IDEAL, 1.3, dash=4)
+        panel.line(side_ray(slope, delta), LENS, 2.4)
+        panel.mark(side_ray(slope, delta)[-1], "lens", 6)
     if delta:
         panel.arrows([_SECOND, _AXIS], [0, _LONG * delta], IDEAL, 2.5)
-        panel.text([_SECOND + 26, _AXIS + _LONG * delta / 2 + 8], "δ", IDEAL, anchor="mm", size=19)
+        panel.text([_SECOND + 26, _AXIS + _LONG * delta / 2], "δ", IDEAL, anchor="mm", size=19)
     return panel
 
 
-def axis_ray(delta: float) -> Array:
-    """Return the way (3, 2) of the ray on the first one's axis: only the second bends it."""
-    run, shift = _SENSOR - _SECOND, _LONG * delta
-    return np.array([[0, _AXIS], [_SECOND, _AXIS], [_SENSOR, _AXIS + run * shift / _FOCAL]])
+def side_ray(slope: float, delta: float) -> Array:
+    """Return a ray (3, 2) through the middle of the first piece, bent by the second, shifted by δ.
+
+    It is bent three times as much as by the lens of κ, barrel and tangential terms.
+    """
+    lens = Lens(k=(-_TIMES * _KAPPA,), p=(_TIMES * _KAPPA * delta, 0))
+    met = _FOCAL * float(lens.distort([0, slope])[1])
+    before = slope * (np.array([0, _SECOND]) - _FIRST)
+    return np.column_stack([[0, _SECOND, _SENSOR], _AXIS + np.array([*before, met])])
 
 
 def _point_out(panel: Panel, p: Array) -> None:

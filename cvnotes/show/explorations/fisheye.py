@@ -25,7 +25,7 @@ def fisheye_model() -> Model:
     settings = (
         Setting("fov", "field of view (°)", 40, 150, 1, 110, "of the view, from left to right"),
         Setting("right", "to the right (°)", -80, 80, 1, -25, "where to look"),
-        Setting("up", "upwards (°)", -60, 60, 1, -10, "where to look"),
+        Setting("up", "upwards (°)", -60, 40, 1, -10, "where to look"),
     )
     about = (
         "A room through a fisheye that sees 220°, with the outline of a pinhole's view; beside it "

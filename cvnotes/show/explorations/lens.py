@@ -75,7 +75,8 @@ def _draw(camera: Camera, paper: Paper, values: Values) -> Drawing:
     grid.image(bent_room(lens, grid.x, grid.y, _SIZE, paper.sharpness, 1))
     _draw_edge(grid, lens)
     draw_fold(grid, lens)
-    curve = paper.panel(_SIZE, (0, _RADIUS), (1.2, -0.2), "observed radius, over the ideal one")
+    title = "observed over ideal radius, in focal lengths"
+    curve = paper.panel(_SIZE, (0, _RADIUS), (1.2, -0.2), title)
     corners = camera_corners(camera)[[0, 1, 2, 3, 0]]
     for colour, width in (("#FFFFFF", 3.5), (CAMERA, 2)):
         grid.line(corners, colour, width)
@@ -193,6 +194,7 @@ def _draw_curve(panel: Panel, lens: Lens, moved: Array) -> None:
     panel.line(np.stack([good, seen_radius(lens, good)], -1), LENS, 2.2)
     for r in np.unique(np.linalg.norm(moved, axis=1).round(9)):
         panel.arrows([r, r], [0, float(seen_radius(lens, r)) - r], IDEAL, 1.2)
+    panel.text([_GUESSED[0] - 7 * panel.pixel, 0.72], "?", IDEAL, anchor="rm", size=18)
     held = [_HELD, float(seen_radius(lens, np.array(_HELD)))]
     panel.mark(held, "lens", 8)
     panel.grip("curve", "the curve of k₁", held, 2)

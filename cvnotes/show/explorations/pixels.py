@@ -39,17 +39,19 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     length = f * x / z
     title = f"from above; the sensor {_ENLARGED:.0f} times as large"
     plan = paper.panel(_SIZE, (-60, 60), (345, -25), title)
-    _draw_plan(plan, np.array([x, z]), f)
+    _draw_plan(plan, np.array([x, z]), f, du)
     row = paper.panel(_SIZE, (-1.12 * _HALF, 1.12 * _HALF), (-1, 1), "a row of the sensor")
     _draw_row(row, length, du)
     said = (
         f"f · x/z = {f:g} · {x / z:.3f} = {length:.2f} mm; ÷ {du:.3f} mm = {length / du:.1f} px; "
         f"+ {_CENTRE:.0f} gives u = {length / du + _CENTRE:.1f}."
     )
+    if abs(length) > _HALF:
+        said += " That is beside the sensor, and not seen."
     return Drawing(paper.join((plan, row)), said)
 
 
-def _draw_plan(panel: Panel, M: Array, f: float) -> None:
+def _draw_plan(panel: Panel, M: Array, f: float, du: float) -> None:
     """Draw the triangle of the point, and in it the similar one of the sensor."""
     (x, z), at = M, _ENLARGED * f
     hit, end = x * at / z, _ENLARGED * _HALF
@@ -63,9 +65,10 @@ def _draw_plan(panel: Panel, M: Array, f: float) -> None:
     side = 1 if x >= 0 else -1
     panel.text([x / 2, z + 14], "x", ESTIMATED, anchor="mm", size=15)
     panel.text([-4 * side, z - 20], "z", ESTIMATED, anchor="mm", size=15)
-    panel.text([-4 * side, at / 2], "f", LENS, anchor="mm", size=15)
+    words, anchor = f"f = {f:g} mm = {f / du:.0f} Δu", "rm" if side > 0 else "lm"
+    panel.text([-2 * side, at / 2], words, LENS, anchor=anchor, size=15)
     panel.text([hit / 2, at + 14], "f · x/z", LENS, anchor="mm", size=15)
-    panel.text([-end, at - 22], "sensor", CAMERA, size=13)
+    panel.text([-end, at + 22], "sensor", CAMERA, size=13)
     panel.text([4, -12], "hole", CAMERA, size=13)
     panel.mark([0, 0], "camera", 7)
     panel.mark(M, "estimated", 7)
@@ -83,7 +86,7 @@ def _draw_row(panel: Panel, length: float, du: float) -> None:
     for u in np.arange(first, _CENTRE + _HALF / du, 100):
         at = (u - _CENTRE) * du
         panel.line([[at, 0], [at, 0.07]], MUTED, 1.2)
-        panel.text([at, 0.15], f"{u:.0f}".replace("-", "−"), anchor="mm", size=13)
+        panel.text([at, 0.15], f"{u + 0.0:.0f}".replace("-", "−"), anchor="mm", size=13)
     panel.text([-_HALF, -0.28], "mm", anchor="lm", size=13)
     panel.text([-_HALF, 0.28], "px", anchor="lm", size=13)
     for end in (-1, 1):  # none through the numbers
@@ -99,7 +102,6 @@ def _draw_row(panel: Panel, length: float, du: float) -> None:
     u0, u = f"u₀ = {_CENTRE:.0f}", f"u = {length / du + _CENTRE:.1f}"
     side = 1 if length >= 0 else -1
     panel.text([-0.04 * side, 0.74], u0, CAMERA, anchor="rm" if side > 0 else "lm", size=14)
-    panel.text(
-        [length + 0.04 * side, 0.74], u, ESTIMATED, anchor="lm" if side > 0 else "rm", size=14
-    )
+    out = side if abs(length) < 1.1 else -side  # at the border it stands inside
+    panel.text([length + 0.04 * out, 0.74], u, ESTIMATED, anchor="lm" if out > 0 else "rm", size=14)
     panel.mark([length, 0], "estimated", 8)

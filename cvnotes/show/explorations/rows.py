@@ -75,7 +75,7 @@ def _cast(plan: Panel, axis: Array, colour: str, out: float) -> None:
 
 def _matrix(paper: Paper, R: Array) -> Panel:
     """Write R: the axes of the camera below each other, each on its colour."""
-    panel = paper.panel((250, 160), (0, 250), (0, 160), "R: its rows are the camera's axes")
+    panel = paper.panel((250, 160), (0, 250), (0, 160), "the matrix R")
     top = 54
     for j, head in enumerate("XZ"):
         panel.text([105 + 80 * j, top - 24], f"along {head}", WORLD, anchor="mm", size=13)
