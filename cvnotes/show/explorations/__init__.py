@@ -30,7 +30,7 @@ _STORIES = (
     "folds", "finding", "moved", "eleventh", "columns", "between", "rings", "plane", "epipolar",
     "rectification", "disparity", "depth", "cube", "conic", "seam", "swing", "frame", "meet",
     "residuals", "enlarged", "hinge", "horizon", "nails", "origin", "similar", "clicks", "zoom",
-    "rim", "decentred", "changes", "rail", "protractor", "asks", "divide", "stop", "pixels",
+    "rim", "decentred", "rail", "protractor", "asks", "divide", "stop", "pixels",
     "rodrigues", "push", "wishes", "bowl", "rows", "parabola", "six", "parallel", "roll",
     "warp", "poster", "thirteen", "imitation",
 )  # fmt: skip
