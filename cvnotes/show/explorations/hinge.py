@@ -149,7 +149,7 @@ def _curve(paper: Paper, angle: int) -> Panel:
     """Draw the standard deviation of α over the bend, 180° less the angle, both logarithmic."""
     low, high = np.log10([_LEAST, _MOST])
     left, right = _at(130), _at(0) + 0.12
-    title = "± of αᵤ (px) by the angle; axes in factors"
+    title = "± of αᵤ (px), by the angle: each line up × 10"
     panel = paper.panel(_CURVE, (left, right), (high, low), title)
     for bend in (90, 45, 20, 10, 4, 2, 1):
         panel.line([[_at(bend), low], [_at(bend), high]], GRID, 0.5)

@@ -70,7 +70,7 @@ def _photo(paper: Paper, place: str, way: Array) -> Panel:
 
 def _changes(paper: Paper, change: Array) -> Panel:
     """Draw a square for each pixel, its side the change: white if it gets brighter, else black."""
-    title = f"sides gᵀd, areas in all {np.sum(change**2):.0f}"
+    title = f"sides g · d, all areas {np.sum(change**2):.0f}"
     panel = paper.panel(_SIDE, (-0.5, 6.5), (-0.5, 6.5), title)
     panel.polygons([3 + 3.5 * _SQUARE], _GROUND)
     at = np.indices((7, 7)).reshape(2, -1).T[:, ::-1]
@@ -82,7 +82,9 @@ def _changes(paper: Paper, change: Array) -> Panel:
 def _traced(paper: Paper, sums: Array) -> Panel:
     """Draw the sum as far out as it is large, from 0° to d, and the same for pushing back."""
     reach = 96000.0
-    panel = paper.panel(_SIDE, (-reach, reach), (-reach, reach), "the sum, direction by direction")
+    panel = paper.panel(
+        _SIDE, (-reach, reach), (-reach, reach), "all areas, direction by direction"
+    )
     for ring in (25, 50, 75):
         panel.line(1000 * ring * circle(91), FAINT, 1)
         panel.text([0, -1000 * ring], f"{ring} 000", MUTED, anchor="mm", size=11)

@@ -9,7 +9,7 @@ from cvnotes.pictures import course
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Panel, Paper
 from cvnotes.show.explorations.strokes import circle
-from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED, WORLD
+from cvnotes.show.style import ESTIMATED, IDEAL, LENS, WORLD
 from cvnotes.targets import refine_edges, refine_subpixel
 
 _VIEW = 6  # which photograph of the course
@@ -87,7 +87,7 @@ def _draw(paper: Paper, values: Values) -> Drawing:
         target.line(ring * circle(181), "#BBBBBB", 0.8)
     for ring, px in enumerate(_RINGS, 1):
         words = f"{px:g} px" if ring == len(_RINGS) else f"{px:g}"
-        target.text([0, ring - 0.25], words, MUTED, anchor="mm", size=12)
+        target.text([0, ring - 0.35], words, IDEAL, anchor="mm", size=14)
     target.mark([0, 0], "ideal", 7)
     off = np.array([hand, *found()[:, corner]]) - true
     _cross(panel, hand)

@@ -123,11 +123,16 @@ def _votes(
             panel.line(ends, _NOISE, 0.7)
             continue
         upright = abs(window.g[i, 0]) > abs(window.g[i, 1])
-        weight = min(length[i] / _STRONG, 1) ** 2  # as it counts in the sum of squares
+        weight = _weight(length[i])
         ink = mixed("#FFFFFF", ESTIMATED if upright else LENS, 0.25 + 0.75 * weight)
         panel.line(ends, ink, 0.8 + 3.2 * weight)
     panel.mark(corners, "ideal", 16)
     return panel
+
+
+def _weight(steep: float) -> float:
+    """Return how much a pixel counts in the sum of squares, from its gradient's length: up to 1."""
+    return min(steep / _STRONG, 1) ** 2
 
 
 def _draw_misses(panel: Panel, window: Window, m: Array) -> None:
@@ -136,7 +141,8 @@ def _draw_misses(panel: Panel, window: Window, m: Array) -> None:
     strong = length > _WEAK
     n = window.g[strong] / length[strong, None]
     feet = m + n * np.sum(n * (window.p[strong] - m), axis=1)[:, None]
-    panel.segments(np.stack([m + 0 * feet, feet], axis=1), WORLD, 1.2)
+    for foot, steep in zip(feet, length[strong], strict=True):
+        panel.line([m, foot], WORLD, 0.6 + 2 * _weight(steep))
     if window.eigenvalues[1] > _NOTHING:
         half = window.axes / np.sqrt(window.eigenvalues / window.misses(window.least))
         across = half[:, 1] * np.sign(half[0, 1] - half[1, 1])  # the short way, up or to the right

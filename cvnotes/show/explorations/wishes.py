@@ -78,14 +78,11 @@ def _plane(paper: Paper, at: Array, b: Array) -> Panel:
         panel.mark(m * column(), "lens", 4)
         panel.text(m * column() + [0.15, -0.4], f"m = {m}", LENS, size=13)
     panel.line([at, b], ESTIMATED, 2.5, dash=5)
-    if x * x + y * y > 1.5:
-        panel.text(
-            corners.T @ [0.1, 0.1, 0.4, 0.4],
-            f"{x * x + y * y:.2f}",
-            ESTIMATED,
-            anchor="mm",
-            size=16,
-        )
+    area = x * x + y * y
+    small = area < 1.5  # its number stands beside it
+    inside = corners.T @ [0.1, 0.1, 0.4, 0.4]
+    place, anchor = (corners.max(axis=0) + [0.2, 0.1], "lm") if small else (inside, "mm")
+    panel.text(place, f"{area:.2f}", ESTIMATED, anchor=anchor, size=16)
     panel.mark(b, "estimated", 7)
     panel.text(b + [0.05, 0.45], "b", ESTIMATED, size=18)
     panel.mark(at, "world", 7)
