@@ -24,7 +24,7 @@ ROOT = Path(__file__).resolve().parents[1]
 NOTEBOOKS = sorted((ROOT / "notebooks").glob("*.ipynb"))
 EXPLORES = re.compile(r"^explore\(", re.MULTILINE)
 # Handles, keys and the way to the kernel are the same for all; test_explore.py tries each model.
-ONE = ("noise",)
+ONE = ("tilt",)
 TOKEN = "of-this-test-alone"
 
 RUN_ALL = """async () => {

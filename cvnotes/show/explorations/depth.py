@@ -214,7 +214,7 @@ def _sentence(Z: float, found: Array) -> str:
     d, here = _ALPHA * _BASE / Z, ~np.isnan(found)
     near, far = _ALPHA * _BASE / (d + np.array([0.5, -0.5]))
     said = f"Shifted by {d:.1f} px, for {Z / 1000:.2f} m; one pixel is {far - near:.0f} mm here. "
-    if here.mean() < 0.005:
+    if here.mean() < 0.05:
         return f"{said}So far hardly a pixel has a depth."
     off = np.median(np.abs(found - true_depths())[here])
     return (

@@ -14,9 +14,9 @@ from cvnotes.warping import interpolate
 
 _SIZE, _SHOWN = (640, 480), (392, 294)  # px
 _NEAREST, _FARTHEST = 2000, 20_000  # mm
-_PATCH = 9  # px from the middle of a patch to its border
+_PATCH = 7  # px from the middle of a patch to its border
 _AROUND = np.stack(np.meshgrid(*2 * [np.arange(-_PATCH, _PATCH + 1.0)]), axis=-1)
-_ALIKE = 0.5  # grey levels: so little more is as good as the best
+_ALIKE = 1.0  # grey levels: so little more is as good as the best
 _LEAST = 80.0  # grey levels on the scale, so that a valley of a few of them looks shallow
 _WIDE = 1.2  # the farthest over the nearest depth of a valley that is wide
 _WIDTH, _HIGH = 410, (44, 112)  # px of the page: the strip along the line, and the curve below it
@@ -71,10 +71,10 @@ def seen_by_the_second(m: Array, depth: Array) -> Array:
 
 
 def differences(m: Array, places: Array) -> Array:
-    """Return how much (n,) the patches around places (n, 2) differ from the one around m."""
+    """Return by which RMS (n,) the patches around places (n, 2) differ from the one around m."""
     first, second = in_grey()
     apart = interpolate(second, places[:, None, None] + _AROUND) - interpolate(first, m + _AROUND)
-    return np.asarray(np.abs(apart).mean(axis=(1, 2)))
+    return np.asarray(np.sqrt(np.mean(apart**2, axis=(1, 2))))
 
 
 def _draw(paper: Paper, values: Values) -> Drawing:
@@ -130,7 +130,10 @@ def _curve(paper: Paper, cost: Array, depth: float, now: float) -> Panel:
     """Draw by how much both patches differ, for each depth; equal steps are equal disparities."""
     top = max(_LEAST, 1.18 * float(cost.max()))
     panel = paper.panel(
-        (_WIDTH, _HIGH[1]), _AXIS, (top, -0.25 * top), "difference of both: pull the cross"
+        (_WIDTH, _HIGH[1]),
+        _AXIS,
+        (top, -0.25 * top),
+        "RMS of the difference: pull the cross",
     )
     for metres in (2, 3, 4, 5, 7, 10, 20):
         panel.line([[1 / metres, 0], [1 / metres, top]], FAINT, 0.5)
@@ -145,7 +148,7 @@ def _curve(paper: Paper, cost: Array, depth: float, now: float) -> Panel:
 
 
 def _sentence(depth: float, now: float, cost: Array) -> str:
-    said = f"At {depth / 1000:.2f} m the two patches differ by {now:.1f} grey levels. "
+    said = f"At {depth / 1000:.2f} m the two patches differ by {now:.1f} grey levels (RMS). "
     if np.ptp(cost) < _ALIKE:
         return f"{said}So they do everywhere: nothing here tells one depth from another."
     low = _TRIED[cost < cost.min() + _ALIKE] / 1000

@@ -86,9 +86,7 @@ def finding_model() -> Model:
     finding = Finding()
     n = len(finding.m) - 1
     settings = (
-        Setting(
-            "step", "step", 0, _STEPS, 0.05, _STEPS, "steps of the refinement, parts of them too"
-        ),
+        Setting("step", "step", 0, _STEPS, 0.05, 0, "steps of the refinement, parts of them too"),
         Setting("photograph", "photograph", 0, n, 1, 2, "which of the twelve photographs"),
     )
     about = (

@@ -31,7 +31,7 @@ def nails_model() -> Model:
         for i, starts in enumerate(_START, start=1)
         for way, to, start in zip(("right", "down"), ("right", "down"), starts, strict=True)
     )  # fmt: skip
-    settings += (Setting("lens", "with a lens", 0, 1, 1, 1, "whose k₁ and k₂ are estimated, too"),)
+    settings += (Setting("lens", "with a lens", 0, 1, 1, 0, "whose k₁ and k₂ are estimated, too"),)
     about = (
         "Four photographs of a board, each with a nail that stands upright on the board, and the "
         "standard deviations of the camera that they determine, on a scale of powers of ten."

@@ -36,7 +36,7 @@ class Measured(NamedTuple):
 
 def thirteen_model() -> Model:
     """Make the model of the thirteen pairs of real photographs."""
-    settings = (Setting("pair", "pair", 1, _COUNT, 1, 8, "which of the thirteen is measured"),)
+    settings = (Setting("pair", "pair", 1, _COUNT, 1, 7, "which of the thirteen is measured"),)
     about = (
         "The corners of a board in two photographs taken at once; the board in the air from above, "
         "with rays from both cameras; its depths' scatter against what was promised, among "
@@ -133,7 +133,8 @@ def _above(paper: Paper, i: int) -> Panel:
     panel.mark(board[0, [0, -1]], "estimated", 7)
     far = board[0, board[0, :, 0].argmax()]
     long = f"{lengths(now.board)[0]:.1f} mm"
-    panel.text(far + [12, 0], long, ESTIMATED, size=15)
+    at, anchor = (far + [12, 0], "lm") if far[0] < 470 else (np.array([572, far[1] - 24]), "rm")
+    panel.text(at, long, ESTIMATED, anchor=anchor, size=15)
     first, step, row = _NUMBERS
     panel.text([first - 24, row], "pair", MUTED, anchor="rm", size=14)
     for k in range(_COUNT):
@@ -161,10 +162,19 @@ def _plot(paper: Paper, i: int) -> Panel:
             panel.mark([one.promised, one.scatter], "lens", 6)
     now = np.array([all_measured()[i].promised, all_measured()[i].scatter])
     panel.mark(now, "estimated", 9)
-    beside = np.array([0.065 if now[0] < 0.5 else -0.065, 0.06])
-    panel.text(now + beside, f"{i + 1}", ESTIMATED, anchor="mm", size=14)
+    panel.text(_free(now) + now, f"{i + 1}", ESTIMATED, anchor="mm", size=14)
     panel.grip("dot", "a pair's dot", now, 20)
     return panel
+
+
+def _free(at: Array) -> Array:
+    """Return the way (2,), one of sixteen, to a label of the dot `at` that is far from others."""
+    turns = np.arange(16) * np.pi / 8
+    ways = np.column_stack([0.075 * np.cos(turns), 0.1 * np.sin(turns)])
+    dots = np.array([[one.promised, one.scatter] for one in all_measured()])
+    ways = ways[(at + ways < _MOST - 0.02).all(axis=1)]
+    apart = np.linalg.norm(at + ways[:, None] - dots, axis=-1).min(axis=1)
+    return np.asarray(ways[apart.argmax()])
 
 
 def _rows(paper: Paper, board: Array) -> Panel:
