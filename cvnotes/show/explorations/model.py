@@ -176,7 +176,7 @@ class Model:
         Examples
         --------
         >>> from cvnotes.show.explorations import model
-        >>> model("projection").dragged("vanishing point", (325, 200))["slope"]
+        >>> model("parallel").dragged("vanishing point", (325, 200))["slope"]
         3.0
         """
         values = self.values(**values)
