@@ -1300,6 +1300,16 @@ def test_a_rod_is_as_high_in_the_picture_as_one_that_is_photographed():
     assert abs(at_height(np.array([140, 448]), 2.8)[1] - horizon) < 1e-6
 
 
+def test_the_band_that_the_horizon_crosses_has_a_mark_for_each_tenth_of_a_metre(lines):
+    MODELS["rod"].drawing(u=140, v=448, height=4)
+    marks = [
+        xy for _, xy, ink, _ in lines if ink == IDEAL and len(xy) == 2 and np.ptp(xy[:, 0]) < 30
+    ]
+    rows = at_height(np.array([140, 448]), np.arange(2.1, 2.95, 0.1))[:, 1]
+    assert np.allclose([xy[0, 1] for xy in marks], rows, atol=1e-6)
+    assert int(np.argmax([np.ptp(xy[:, 0]) for xy in marks])) == 4  # the half metre is the longest
+
+
 @pytest.mark.parametrize(("u", "v"), [(190, 388), (250, 400), (600, 360), (140, 448)])
 def test_the_rod_gets_its_two_metres_from_the_box_by_a_vanishing_point(u, v):
     street = Camera(course.camera().A, look_at([12500, -1200, -2500], [1200, -2300, 12500]))

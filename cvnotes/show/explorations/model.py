@@ -177,7 +177,7 @@ class Model:
         --------
         >>> from cvnotes.show.explorations import model
         >>> model("parallel").dragged("vanishing point", (325, 200))["slope"]
-        3.0
+        2.5
         """
         values = self.values(**values)
         if name not in self.drags:
