@@ -451,7 +451,7 @@ def test_a_hand_pulls_what_the_picture_offers_by_mouse_and_by_keys(page, explore
     expect = pytest.importorskip("playwright.sync_api").expect
     for name, label, moved in (
         ("homography", "corner 1, top left", ("corner 1 u", "corner 1 v")),
-        ("projection", "the vanishing point", ("heading (°)", "slope (°)")),
+        ("parallel", "the vanishing point", ("heading (°)", "slope (°)")),
         ("camera", "the camera, to carry it", ("angle x (°)", "angle y (°)")),
     ):
         output = _output(page, explorers, rf'^explore\("{name}"')

@@ -279,7 +279,7 @@ def test_a_mouse_pulls_corners_directions_and_the_camera(all_explorations):
     boxes = explorations(page)
     for name, grip, labels in (
         ("homography", "corner 1, top left", ["corner 1 u", "corner 1 v"]),
-        ("projection", "the vanishing point", ["heading (°)", "slope (°)"]),
+        ("parallel", "the vanishing point", ["heading (°)", "slope (°)"]),
         ("camera", "the camera, to carry it round the board", ["angle x (°)", "angle y (°)"]),
     ):
         box = boxes[name]

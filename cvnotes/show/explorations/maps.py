@@ -18,7 +18,7 @@ _MEASURED = (
     ("angle at corner 3", "{:.0f}°"),
     ("blue side : bottom", "{:.3f}"),
     ("angle of opposite sides", "{:.0f}°"),
-    ("blue half : other half", "{:.3f}"),
+    ("ab : bd", "{:.3f}"),
     ("cross-ratio", "{:.2f}"),
 )
 _SNAP = 0.08  # so near to what changes nothing a hand means just that
@@ -202,5 +202,5 @@ def _rows(H: Array) -> list[tuple[str, str, float, float]]:
 
 
 def _sentence(H: Array, values: Values) -> str:
-    kept = [what for what, form, *both in _rows(H) if len({form.format(x) for x in both}) == 1]
-    return f"{_SAID[kind(values)]}. As before: {', '.join(kept)}, straight lines."
+    changed = [what for what, form, *both in _rows(H) if len({form.format(x) for x in both}) > 1]
+    return f"{_SAID[kind(values)]}. It has changed: {', '.join(changed) or 'none of these'}."

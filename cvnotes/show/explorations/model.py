@@ -176,8 +176,8 @@ class Model:
         Examples
         --------
         >>> from cvnotes.show.explorations import model
-        >>> model("projection").dragged("vanishing point", (325, 200))["slope"]
-        3.0
+        >>> model("parallel").dragged("vanishing point", (325, 200))["slope"]
+        2.5
         """
         values = self.values(**values)
         if name not in self.drags:

@@ -1,6 +1,5 @@
 """Explore heights in one picture: a rod in metres that is stood anywhere on the ground."""
 
-from collections.abc import Iterator
 from dataclasses import replace
 from functools import lru_cache
 from itertools import pairwise
@@ -15,7 +14,7 @@ from cvnotes.projective import from_homogeneous, to_homogeneous
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Drawn, Panel, Paper
 from cvnotes.show.explorations.strokes import circle
-from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, LENS, MUTED
+from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED
 
 _CAMERA = Camera(course.camera().A, look_at([12500, -1200, -2500], [1200, -2300, 12500]))
 _EYE, _BOX, _TALLEST = 2.8, 2.0, 6.0  # m: heights of camera, yellow box and highest rod
@@ -40,7 +39,7 @@ def rod_model() -> Model:
     about = (
         "A rod with a band for each metre stands on the ground before three blocks; the black line "
         "is the horizon. The line through its foot and the yellow box's meets it in e, and from e "
-        "a line over the box brings 2 m to the rod. Below, the same from the side, with the camera."
+        "a line over the box brings 2 m to the rod."
     )
 
     @lru_cache(maxsize=1)
@@ -68,14 +67,7 @@ def rod_model() -> Model:
         panel.grip("foot", "the foot of the rod", foot, 4)
         top = at_height(foot, height)
         panel.grip("top", "the top of the rod", top, 4)
-        side = paper.panel(
-            (width, 146),
-            (-2.5, 39),
-            (6.6, -0.88),
-            "the same from the side (m), all drawn over each other",
-        )
-        _draw_side(side, float(_away(_stands(foot))), height)
-        return Drawing(paper.join((panel,), (side,)), _sentence(foot, height, e))
+        return Drawing(paper.join((panel,)), _sentence(foot, height, e))
 
     def carried(_: Values, at: Array) -> Values:
         return {"u": float(at[0]), "v": float(at[1])}
@@ -141,19 +133,6 @@ def _draw_way(panel: Panel, foot: Array, depths: Array) -> float:
     return float(e[0])
 
 
-def _blocks_from_the_side() -> Iterator[tuple[float, float, float, str]]:
-    """Return where each block begins and ends, in m from the camera, its height and colour."""
-    for i, colour in zip((8, 0, 16), ("#C6D6DD", "#EDCCBA", "#EDE5CA"), strict=True):
-        W = blocks().vertices[i : i + 8]
-        near, far = _away(W[[1, 6]]).tolist()
-        yield near, far, float(np.ptp(W[:, 1])) / 1e3, colour
-
-
-def _away(W: Array) -> Array:
-    """Return how far before the camera places (..., 3) are, in m, along the ground."""
-    return np.asarray(np.linalg.norm((W - _CAMERA.centre)[..., [0, 2]], axis=-1) / 1e3)
-
-
 def _draw_rod(panel: Panel, foot: Array, height: float, depths: Array) -> None:
     """Draw a band for each metre; where something stands before it, thin dashes."""
     h = np.append(np.arange(0, height, 0.125), height)
@@ -168,6 +147,14 @@ def _draw_rod(panel: Panel, foot: Array, height: float, depths: Array) -> None:
         colour, behind = ESTIMATED if int(h[i]) % 2 == 0 else "#FFFFFF", hidden[i : i + 2].any()
         if not behind or i % 2:
             panel.line(part, colour, 1 if behind else width)
+    cut = int(_EYE)  # the band that the horizon crosses has its tenths, the half metre longer
+    for tenth in range(1, 10):
+        at = at_height(foot, cut + tenth / 10)
+        if height >= cut + tenth / 10 and not hidden[0]:
+            long = (9 if tenth == 5 else 5) * panel.pixel
+            away = -1 if foot[0] > _LATE else 1
+            start = at - [away * (width / 2 + 1) * panel.pixel, 0]
+            panel.line([start, start - [away * long, 0]], IDEAL, 1)
     apart = np.linalg.norm(pixels[8] - pixels[0]) / panel.pixel  # where letters have no room,
     for metre in range(1 if apart > 20 else int(height), int(height) + 1):  # only the last
         aside = 18 if (height - metre) * apart < 12 else 4  # beside the ring of the grip
@@ -180,25 +167,6 @@ def _hidden(pixels: Array, places: Array, depths: Array) -> Array:
     """Return which places (n, 3) a block hides; they are seen at these pixels."""
     u, v = np.clip(np.rint(pixels) - _BORDER, 0, np.array(_WIDE.size) - 1).astype(int).T
     return np.asarray(depths[v, u] < places @ _CAMERA.G[2, :3] + _CAMERA.G[2, 3] - 100)
-
-
-def _draw_side(panel: Panel, away: float, height: float) -> None:
-    panel.polygons([[[-9, 0], [99, 0], [99, -9], [-9, -9]]], "#DDDACF")
-    for near, far, top, colour in _blocks_from_the_side():
-        panel.polygons([[[near, 0], [near, top], [far, top], [far, 0]]], colour)
-    panel.ticks(x=(0, 10, 20, 30), y=(2, 4, 6))
-    edge = float(_away(blocks().vertices[17]))
-    panel.line([[edge, _BOX], [away, _BOX]], ESTIMATED, 1)
-    panel.line([[edge, 0], [edge, _BOX]], LENS, 2.5)
-    panel.line(np.array([[0, _EYE], [99, _EYE]]), IDEAL, 1)
-    panel.line(np.array([[0, 0], [0, _EYE]]), MUTED, 2)
-    panel.mark([0, _EYE], "camera", 9, looks=(1, 0))
-    panel.text([0.6, 0.5], "camera", CAMERA, anchor="lm")
-    panel.line(np.array([[away, 0], [0, _EYE], [away, height]]), ESTIMATED, 0.9, dash=4)
-    for metre in np.arange(0, height, 1):
-        ends = np.array([[away, metre], [away, min(metre + 1, height)]])
-        panel.line(ends, MUTED, 7)
-        panel.line(ends, ESTIMATED if metre % 2 == 0 else "#FFFFFF", 5)
 
 
 def _sentence(foot: Array, height: float, e: float) -> str:

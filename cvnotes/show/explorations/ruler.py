@@ -67,8 +67,7 @@ def ruler_model() -> Model:
             f"from above (m), stretched across; bar: {_LONGER} × ±",
         )
         _draw_plan(plan, t, near, far)
-        ratio = t / (t - _GAP) if t != _GAP else np.inf
-        return Drawing(paper.join((panel, plan)), _sentence(foot, t, far - near, ratio))
+        return Drawing(paper.join((panel, plan)), _sentence(foot, t, far - near))
 
     def pulled(_: Values, at: Array) -> Values:
         part = (at[0] - _FEET[0, 0]) / (_END[0] - _FEET[0, 0])
@@ -107,13 +106,13 @@ def _draw_plan(panel: Panel, t: float, near: float, far: float) -> None:
     panel.text([_X - 0.6, min(t, _FARTHEST - 5)], said, ESTIMATED, anchor="rm", size=13)
 
 
-def _sentence(foot: Array, t: float, width: float, ratio: float) -> str:
+def _sentence(foot: Array, t: float, width: float) -> str:
+    b, c, end = np.linalg.norm([_FEET[1], foot, _END] - _FEET[0], axis=1).round(1).tolist()
+    ratio = c * (end - b) / ((c - b) * end) if c != b else np.inf
     off = f"{width / 2:.1f}" if width > 0.1 else f"{width / 2:.2f}"
     where = f"The foot in row {foot[1]:.1f} stands {t:.1f} ± {off} m behind a"
     where += ", beyond the plan" if t > _FARTHEST else ""
-    if not np.isfinite(ratio) or abs(ratio) > 999:
-        return f"{where}, at b itself: there the ratio (a, b; c, ∞) is infinite."
-    return (
-        f"{where}: in the picture as on the ground (a, b; c, ∞) = {round(ratio, 2) + 0.0:.2f}. "
-        f"A click that misses by {_CLICK:g} px along the dashed line makes the ±."
-    )
+    dashed = f"Along the dashed line, from a: b {b:.1f}, c {c:.1f}, ∞ {end:.1f} px"
+    if abs(ratio) > 999:
+        return f"{where}. {dashed}; at b the ratio (a, b; c, ∞) is infinite."
+    return f"{where}. {dashed}; so (a, b; c, ∞) = {round(ratio, 2) + 0.0:.2f}."

@@ -14,7 +14,6 @@ from cvnotes.camera import Camera, intrinsics, pose
 from cvnotes.pictures import rails, render_scene
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Drawn, Panel, Paper
-from cvnotes.show.explorations.projection import in_front
 from cvnotes.show.explorations.strokes import circle
 from cvnotes.show.style import CAMERA, ESTIMATED, MUTED, WORLD
 
@@ -137,9 +136,20 @@ def _strip(camera: Camera, low: Array, top: Array, half: float, sun: Array, y: f
     aside = half * np.abs(level).sum() * np.array([level[1], 0, -level[0]])  # it is square
     eye = camera.centre
     left, right = (
-        camera.project(in_front(foot + by - eye, tip - foot) + eye) for by in (-aside, aside)
+        camera.project(_in_front(foot + by - eye, tip - foot) + eye) for by in (-aside, aside)
     )
     return np.concatenate([left, right[::-1]])
+
+
+def _in_front(start: Array, along: Array) -> Array:
+    """Cut the segment start … start + along to what lies in front of the camera: (2, 3)."""
+    z, dz = float(start[2]) - _NEAR, float(along[2])
+    if z < 0 and z + dz < 0:
+        return np.full((2, 3), 0.0)  # the camera's centre has no image
+    cut = -z / dz if z * (z + dz) < 0 else None
+    first = cut if cut is not None and z < 0 else 0.0
+    last = cut if cut is not None and z >= 0 else 1.0
+    return start + np.outer([first, last], along)
 
 
 def _mask(polygons: list[Array], thinnest: float = 0) -> Image.Image:

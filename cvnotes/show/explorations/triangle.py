@@ -22,6 +22,7 @@ _MIDDLE = np.array([75.0, 0, 50])  # (u, v, w) about which the view of space tur
 _ABOVE = np.radians(15)  # from where it is seen
 _RING, _LOW = 560.0, 1440.0  # px: radius of the ring by which it is turned, and its v
 _BEHIND = 1.25  # times as far from the eye as the glass: where the box stands
+_ASIDE = 75  # degrees: from there on the triangle of H, eye and Y is seen well
 _CLEAR = 128  # of 255: how much of its ink the glass lays over what is behind it
 _AROUND = (0, 45, -45, 90, -90, 135, -135, 180)  # degrees: where a letter may stand
 _PANE, _CORE, _FACES = "#D5EAF7", "#FFFFFF", ("#E6DCD6", "#F4EFEB", "#D8CBC3")
@@ -206,7 +207,7 @@ def _draw_glass(panel: Panel, turn: float, v: Array, photo: Bitmap.Image, box: A
 def _draw_rods(panel: Panel, turn: float, v: Array, eye: Array, square: float, box: Array) -> None:
     """Draw the triangle on the glass, the eye before it, and the rods from there to its corners.
 
-    Grey is the half circle over the altitude from Y to H, on which the eye is, if there is one.
+    From aside, grey is the half circle over the altitude from Y to H; on it the eye is, if any.
     Letters stay away from the box (3, 4, 2).
     """
     m, c, top = (on_sheet(place, turn) for place in (in_space(v), eye * [1, 1, 0], eye))
@@ -217,7 +218,8 @@ def _draw_rods(panel: Panel, turn: float, v: Array, eye: Array, square: float, b
         face[[i, j]] for face in box for i, j in ((0, 1), (1, 2), (2, 3), (3, 0), (0, 2), (1, 3))
     ]
     panel.segments(sides, ESTIMATED, 1.5)
-    if np.isfinite(square):
+    from_aside = abs(turn) > _ASIDE  # from where the half circle is asked about
+    if np.isfinite(square) and from_aside:
         phi, foot = np.radians(np.arange(0, 181.0, 3)), _feet(v)[1]
         half = (v[1] - foot) / 2
         along = foot + half + np.cos(phi)[:, None] * half
@@ -229,15 +231,19 @@ def _draw_rods(panel: Panel, turn: float, v: Array, eye: Array, square: float, b
         panel.line(on_sheet(in_space(_square_at(foot, v)), turn), IDEAL, 1.2)
         names += [("H", H, MUTED)]
     if square > 0:
-        panel.line([top, H], MUTED, 1.2)  # at right angles to the rod to Y
+        if from_aside:
+            panel.line([top, H], MUTED, 1.2)  # at right angles to the rod to Y
+            lines += [np.array([top, H])]
         panel.line([top, c], IDEAL, 1.6)
-        lines += [np.array([top, H]), np.array([top, c])]
+        lines += [np.array([top, c])]
         names += [("eye", top, CAMERA)]
-        if np.linalg.norm(c - top) > 220:
-            names += [("c", c, ESTIMATED), ("f", 0.6 * c + 0.4 * top, IDEAL)]
+        if (long := np.linalg.norm(c - top)) > 220:
+            names += [("c", c, ESTIMATED)]
+        if long > 450:
+            names += [("f", 0.6 * c + 0.4 * top, IDEAL)]
         ways = in_space(v) - eye
-        long = np.linalg.norm(ways, axis=1, keepdims=True)
-        short = ways / long * min(150, 0.5 * long.min())
+        lengths = np.linalg.norm(ways, axis=1, keepdims=True)
+        short = ways / lengths * min(150, 0.5 * lengths.min())
         for a, b in zip(short, np.roll(short, 1, axis=0), strict=True):
             panel.line(on_sheet(eye + np.array([a, a + b, b]), turn), IDEAL, 1.2)
         panel.segments(rods, CAMERA, 5)
