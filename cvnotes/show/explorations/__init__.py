@@ -29,7 +29,7 @@ _STORIES = (
     "clouds", "subpixel", "votes", "twins", "ellipse", "valley", "ransac", "homography", "fold",
     "folds", "finding", "moved", "eleventh", "columns", "between", "rings", "plane", "epipolar",
     "rectification", "disparity", "depth", "cube", "conic", "seam", "swing", "frame", "meet",
-    "residuals", "enlarged", "hinge", "horizon", "nails", "origin", "similar", "clicks", "zoom",
+    "residuals", "hinge", "horizon", "nails", "origin", "similar", "clicks", "zoom",
     "rim", "decentred", "changes", "rail", "protractor", "asks", "divide", "stop", "pixels",
     "rodrigues", "push", "wishes", "bowl", "rows", "parabola", "six", "parallel", "roll",
     "warp", "poster", "thirteen", "imitation",
