@@ -2839,7 +2839,7 @@ def test_the_values_on_both_edges_between_four_pixels_are_named_as_in_the_formul
     for du, dv, upper, lower in ((0.35, 0.6, 70.5, 141.5), (0.8, 0.25, 84.0, 182.0)):
         written.clear()
         MODELS["between"].drawing(du=du, dv=dv)
-        above, below = written[f"I_a = {upper:.1f}"], written[f"I_b = {lower:.1f}"]
+        above, below = written[f"upper {upper:.1f}"], written[f"lower {lower:.1f}"]
         assert above[0] == below[0] == du
         assert above[1] < 0 < 1 < below[1]
 
@@ -3832,14 +3832,14 @@ def test_what_has_names_is_chosen_from_a_list_and_follows_the_hand():
 
 
 def test_a_choice_is_a_switch_that_changes_the_picture_and_goes_back_with_the_rest():
-    widget = explorations.explore("enlarged")
+    widget = explorations.explore("cube")
     start = widget.image.value
-    assert widget.values["bilinear"] == 1
-    widget.sliders["bilinear"].value = False
-    assert widget.values["bilinear"] == 0
+    assert widget.values["lens"] == 1
+    widget.sliders["lens"].value = False
+    assert widget.values["lens"] == 0
     assert widget.image.value != start
     widget.reset_button.click()
-    assert widget.sliders["bilinear"].value is True
+    assert widget.sliders["lens"].value is True
     assert widget.image.value == start
     widget.close_all()
 
@@ -3938,7 +3938,6 @@ FREE_TO_MOVE = {
 }
 ON_A_WAY = {  # along a curve, by its x
     ("residuals", "k1"),
-    ("enlarged", "bar"),
     ("finding", "step"),
     ("tilt", "lens"),
     ("fold", "fold"),
@@ -4694,30 +4693,6 @@ def test_what_is_left_with_a_believed_k1_is_what_a_library_leaves_that_finds_the
         )
 
 
-def test_an_enlargement_is_as_wide_as_its_blur_and_the_long_lens_as_narrow_as_its_own():
-    from cvnotes.show.explorations.enlarged import CORNER, FACTOR, SIZE, VIEW, piece, sharp
-
-    # Between centres of pixels nothing is interpolated: what was photographed is there again.
-    photo, nearest = course.photos()[VIEW].astype(float), piece("nearest")
-    left, top = CORNER.astype(int)
-    wide, high = np.array(SIZE) // FACTOR
-    seen = photo[top : top + high, left : left + wide]
-    assert np.array_equal(nearest, np.kron(seen, np.ones((FACTOR, FACTOR))))
-    # The long lens, made small again by the mean of its pixels, is the photograph but for noise.
-    small = sharp().reshape(high, FACTOR, wide, FACTOR).mean(axis=(1, 3))
-    assert np.median(np.abs(small - seen)) < 3
-    # An edge blurred by σ rises from a tenth to nine tenths over 2 · 1.2816 σ. Those of the pixel
-    # and of its straight line between two add up to it, as variances.
-    said = numbers(MODELS["enlarged"].drawing().sentence)
-    assert said[1] == pytest.approx(2 * 1.2816 * 0.7 / np.cos(np.radians(3)), abs=2)
-    both = FACTOR * np.sqrt(0.7**2 + 1 / 12 + 1 / 6)
-    assert said[0] == pytest.approx(2 * 1.2816 * both, abs=2)
-    assert said[2] == round(np.sqrt(np.mean((piece("bilinear") - sharp()) ** 2)))
-    shown = MODELS["enlarged"].drawing(bar=240).picture[TITLE : TITLE + SIZE[1], MARGIN:]
-    assert np.abs(shown[5:250, 5:230, 0] - piece("bilinear")[5:250, 5:230]).max() <= 1
-    assert np.abs(shown[5:250, 250:450, 0] - sharp()[5:250, 250:450]).max() <= 1
-
-
 def asked_by_hand(warp, u, v):
     """Where pixel (u, v) of a new picture has to ask, by the formulas of the chapter."""
     middle = np.array([29.5, 22])
@@ -5113,10 +5088,10 @@ def test_two_patches_differ_by_the_rms_of_the_grey_levels_of_15_by_15_pixels():
 
 
 def test_how_far_a_lens_has_moved_a_pixel_is_written_beside_it_and_no_line_crosses(written):
+def test_how_far_a_lens_has_moved_a_pixel_is_said_and_drawn_and_no_line_crosses():
     for u, v in ((4, 4), (55, 40)):
-        written.clear()
         drawing = MODELS["asks"].drawing(warp=4, u=u, v=v)
-        (words,) = [words for words in written if "nearer to the middle" in words]
+        (words,) = [words for words in drawing.sentence.split(", ") if "nearer to the" in words]
         own, at = np.array([u, v]), asked_by_hand(4, u, v)
         assert float(words.split()[0]) == pytest.approx(np.hypot(*(own - at)), abs=0.0051)
         middle = np.rint(6 * ((own + at) / 2 + 0.5)).astype(int) + [366 + MARGIN, TITLE]
@@ -5130,5 +5105,5 @@ def test_the_blue_frame_holds_the_waves_that_are_two_new_pixels_long():
     picture = MODELS["rings"].drawing(blur=1, place=20).picture[TITLE:, MARGIN + 366 :]
     blue = np.abs(picture[:360, :360].astype(int) - colour(LENS)).max(axis=2) < 60
     v, u = np.nonzero(blue)
-    reach = 240 / 360 * np.ptp(u[v > 180]) / 2  # below the words
+    reach = 240 / 360 * np.ptp(u[v > 180]) / 2
     assert 0.0036 * reach == pytest.approx(1 / 6, rel=0.03)

@@ -30,10 +30,10 @@ _STORIES = (
     "subpixel", "votes", "twins", "ellipse", "ransac", "homography", "fold", "folds", "finding",
     "moved", "eleventh", "columns", "between", "rings", "plane", "epipolar", "rectification",
     "disparity", "depth", "cube", "conic", "seam", "swing", "frame", "meet", "residuals",
-    "enlarged", "hinge", "horizon", "nails", "origin", "similar", "clicks", "zoom", "rim",
-    "decentred", "rail", "protractor", "asks", "divide", "stop", "pixels", "rodrigues", "push",
-    "wishes", "bowl", "rows", "parabola", "six", "parallel", "roll", "warp", "poster",
-    "thirteen", "imitation",
+    "hinge", "horizon", "nails", "origin", "similar", "clicks", "zoom", "rim", "decentred",
+    "rail", "protractor", "asks", "divide", "stop", "pixels", "rodrigues", "push", "wishes",
+    "bowl", "rows", "parabola", "six", "parallel", "roll", "warp", "poster", "thirteen",
+    "imitation",
 )  # fmt: skip
 __all__ = ["NAMES", "pull_points", "explore", "model"]
 NAMES = (*_MODELS, *_STORIES)

@@ -105,7 +105,13 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     shown = (_LARGER * SIZE[0], _LARGER * SIZE[1])
     left = paper.picture_panel(shown, SIZE, "the new picture: pull the pixel that asks")
     left.image(new, smooth=False)
-    right = paper.picture_panel(shown, SIZE, f"{NAMES[warp - 1]}: where they ask in the photograph")
+    out, where, there = not ((at > -1) & (at < SIZE)).all(), "", "where they ask in the photograph"
+    if warp == 4:
+        nearer = f"{np.hypot(*(at - here)):.2f} px nearer to the middle"
+        where, there = f", {nearer}", f"it asks {nearer}"
+    elif out:
+        where = ", beside the photograph"
+    right = paper.picture_panel(shown, SIZE, f"{NAMES[warp - 1]}: {there}")
     right.image(_pale(photo), smooth=False)  # on which dots are seen everywhere
     if warp == 4:  # from where they would ask without it
         own = map_array(lambda m: m, SIZE)
@@ -114,13 +120,10 @@ def _draw(paper: Paper, values: Values) -> Drawing:
         right.segments(ways.reshape(-1, 2, 2), LENS, 1.8)
     half = _DOT / 2 * right.pixel
     right.polygons([_square(dot - half, 2 * half)[:4] for dot in asked.reshape(-1, 2)], LENS)
-    out, where = not ((at > -1) & (at < SIZE)).all(), ""
     if warp == 4:
-        where = f", {np.hypot(*(at - here)):.2f} px nearer to the middle"
         _framed(left, _HALF + 0.8 * circle(25), 1)
-        _draw_displaced(right, here, at, where[2:])
+        _framed(right, (here, at), 4)
     else:
-        where = ", beside the photograph" if out else ""
         _draw_connected(left, right, here + [wide / 2, 0], at)
     _framed(left, _square(here - wide / 2, wide), 2)
     _framed(right, _square(np.floor(at) - 0.5, 2), 2)
@@ -148,13 +151,6 @@ def _draw_connected(left: Panel, right: Panel, begin: Array, at: Array) -> None:
     if out:
         right.arrows(end, border - end, "white", 5)
         right.arrows(end, border - end, ESTIMATED, 2.4)
-
-
-def _draw_displaced(panel: Panel, own: Array, at: Array, words: str) -> None:
-    """Draw by how much a lens has moved a pixel, thick, and write it on the side of the middle."""
-    _framed(panel, (own, at), 4)
-    side, anchor = (1.8, "lm") if own[0] < _MIDDLE[0] else (-1.8, "rm")
-    panel.text(at + [side, 0], words, ESTIMATED, anchor=anchor, size=13)
 
 
 def _pale(photo: Drawn) -> Drawn:

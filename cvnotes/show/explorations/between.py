@@ -88,10 +88,10 @@ def _surface(paper: Paper, place: Array) -> Panel:
     du, dv = place
     above, below = _GREY[[0, 2]] + (_GREY[[1, 3]] - _GREY[[0, 2]]) * du
     panel.line([[du, 0], [du, 1]], ESTIMATED, 2)
-    for v, name, value in ((0, "I_a", above), (1, "I_b", below)):
+    for v, name, value in ((0, "upper", above), (1, "lower", below)):
         panel.line([[0, v], [1, v]], LENS, 2)
         panel.mark([du, v], "estimated", 6)
-        _write(panel, np.array([du, v + 0.36 * (v - 0.5)]), f"{name} = {value:.1f}", value)
+        _write(panel, np.array([du, v + 0.36 * (v - 0.5)]), f"{name} {value:.1f}", value)
     panel.mark(_AT, "lens", 6)
     panel.mark(place, "estimated", 8)
     aside = np.array([0.17 if du < 0.5 else -0.17, np.clip(dv, 0.1, 0.9) - dv])

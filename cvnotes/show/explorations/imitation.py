@@ -28,7 +28,7 @@ def imitation_model() -> Model:
 
     def draw(paper: Paper, values: Values) -> Drawing:
         J_p, answer, N = parted(values["turn"])
-        corner = paper.panel(_SIDE, _ACROSS, _DOWN, "a corner of a board: pull Jp by its tip")
+        corner = paper.panel(_SIDE, _ACROSS, _DOWN, "a corner of a board: pull the green arrow")
         _draw_corner(corner, J_p, answer, N)
         bowls = paper.panel(
             (440, _SIDE[1]), (_LEFT, _FAR), (_TOP, _FOOT), "the squares left, over a"

@@ -69,14 +69,12 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     left.grip("place", "where to look along the row", held, 2)
     right = paper.panel(
         (360, 360), (-0.5, _SIZE - 0.5), (-0.5, _SIZE - 0.5),
-        f"shrunk by three, to {len(new)} × {len(new)} pixels",
+        "shrunk by three; in blue 46 px to each side",
     )  # fmt: skip
     right.image((8 * np.rint(new / 8)).clip(0, 255).astype(np.uint8), smooth=False)
     frame = _MIDDLE + _FINEST * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1], [-1, -1]])
     for ink, thick in (("white", 6.0), (LENS, 2.5)):
         right.line(frame, ink, thick)
-    corner = frame[0] - [0, 3]
-    right.text(corner, "46 px to each side", LENS, anchor="ld", size=12)
     low, high = _MIDDLE + place + np.array([-_AROUND, _AROUND])
     for panel in (left, right):
         around = np.array([[low, -7], [high, -7], [high, 7], [low, 7], [low, -7]])

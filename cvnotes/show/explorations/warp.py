@@ -64,7 +64,7 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     backward[~covered] = _PAPER
     holes, folds = covered & (forward.hits == 0), covered & (forward.hits > 1)
     size = (_LARGER * SIZE[0], _LARGER * SIZE[1])
-    title = "each pixel is sent: orange never hit, blue twice or more"
+    title = "each pixel is sent: orange never hit" + ", blue twice or more" * bool(folds.any())
     said = f"Turned by {values['angle']:g}° and {zoom:g} times as large."
     if values["count"]:
         title = f"each pixel is sent: {holes.sum()} never hit, {folds.sum()} twice or more"
