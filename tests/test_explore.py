@@ -5087,7 +5087,6 @@ def test_two_patches_differ_by_the_rms_of_the_grey_levels_of_15_by_15_pixels():
     assert said[1] == pytest.approx(rms, abs=0.051)
 
 
-def test_how_far_a_lens_has_moved_a_pixel_is_written_beside_it_and_no_line_crosses(written):
 def test_how_far_a_lens_has_moved_a_pixel_is_said_and_drawn_and_no_line_crosses():
     for u, v in ((4, 4), (55, 40)):
         drawing = MODELS["asks"].drawing(warp=4, u=u, v=v)

@@ -21,8 +21,7 @@ if TYPE_CHECKING:
     from cvnotes.show.explorations.shell import Explorer, PulledPoints
 
 # Each is a module of this folder, in which `<name>_model` makes its model: of a camera and a board,
-_MODELS = ("projection", "camera", "lens", "tilt")
-_MODELS = ("camera", "lens", "noise", "tilt")
+_MODELS = ("camera", "lens", "tilt")
 # or of what the course itself has photographed or thought of.
 _STORIES = (
     "straighten", "stands", "pairs", "ring", "maps", "ruler", "eye", "rod", "shadows", "forged",
