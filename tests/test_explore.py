@@ -1352,6 +1352,7 @@ def test_a_wrong_camera_draws_the_tower_where_its_own_lines_of_sight_meet_its_pi
             j, i = round(u / 2), round(v / 2)
             near = seen[i - 2 : i + 3, j - 2 : j + 3].reshape(-1, 3)
             assert (np.abs(near - colour(ink)).max(axis=1) < 60).any(), (away, alpha, ink)
+    assert "is where the true camera sees it, to 0.0" in tower.drawing().sentence
     off = [numbers(tower.drawing(away=away).sentence)[-1] for away in (0, -50, -100, -200, 60)]
     assert off[0] < 0.05
     assert 20 < off[1] < off[2] < off[3]

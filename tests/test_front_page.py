@@ -1,5 +1,6 @@
 """The first page: what README says, in ten seconds, and nothing on it that is not so."""
 
+import json
 import re
 import sys
 from html import unescape
@@ -9,6 +10,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from cvnotes.learn.page import answered
 from cvnotes.show import explorations
 from cvnotes.show.explorations.paper import Paper
 
@@ -57,14 +59,22 @@ def test_the_hours_it_names_are_those_of_all_chapters():
     assert f"some {round(hours)} hours" in front_page.whom(readme)
 
 
-def test_the_tutor_s_reply_is_the_one_that_the_mistake_on_the_page_gets():
+def test_the_box_names_the_mistake_that_is_in_it_and_without_python_the_page_does():
     page = front_page.front_page(live=True, lite=True)
-    code = re.search(r"```python\n(.*?)```", page, re.S)[1]
-    names = {}
-    exec(code, names)
-    said = front_page.check("camera_centre", names["my_camera_centre"])
+    cell = unescape(re.search(r'class="cell_input"><pre>(.*?)</pre>', page, re.S)[1])
+    assert "return T\n" in cell
+    said = front_page.check("camera_centre", front_page.camera_centre)
     assert said.misconception
-    assert said.message in unescape(page)
+    reply = answered(json.dumps({"exercise": "camera_centre", "cell": cell}))
+    assert said.message in unescape(json.loads(reply)["html"])
+    assert said.message in front_page.front_page(live=False, lite=False)
+    assert said.message not in page
+
+
+def test_a_card_tells_how_long_its_chapter_takes():
+    page = front_page.front_page(live=True, lite=True)
+    assert "<small>build · 1¾ h</small> <strong>1 · Projective space</strong>" in page
+    assert page.count(" h</small>") == 10
 
 
 @pytest.mark.slow

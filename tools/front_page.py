@@ -36,12 +36,28 @@ PARTS = {
     "more_exercises": ("conic", {"a": 0.0, "b": 1.5}, (414, 44, 390)),
 }
 _ROW = re.compile(r"^\| (\S+) \| \[(.+?)\]\(notebooks/(\w+)\.ipynb\) \| (.+?) \|$", re.M)
-_PART = re.compile(r"^\|(\w+)\|\[.+?\]\((\w+)\.ipynb\)", re.M)
+_PART = re.compile(r"^\|(\w+)\|\[.+?\]\((\w+)\.ipynb\)\|.+\|(\S+)\|$", re.M)
 _IMAGE = re.compile(r'src="data:image/(?:png|webp);base64,([^"]+)"')
 
 # The most frequent mistake of all, as a student writes it.
 WRONG = """def my_camera_centre(R, T):
-    return T"""
+    return T
+
+
+check("camera_centre", my_camera_centre)"""
+# Before the picture, which follows the hand.
+QUESTION = """<p class="front-question"><strong>Pull the camera nearer</strong> in the picture from
+the side: dashed lines show where the tower belongs. Can you bring it back by pulling only the
+camera's glass pane?</p>"""
+# What docs/static/live/exercises.js makes a box of.
+BOX = """A student's answer is in the box: press *Check*.
+
+```{raw} html
+<div class="front-answer"><div class="cell_input"><pre>@</pre></div></div>
+```"""
+REPLY = """A student writes `return T`, and the course answers:
+
+> **Not yet right.** @"""
 
 
 def camera_centre(R: object, T: object) -> object:  # noqa: ARG001
@@ -57,10 +73,9 @@ def front_page(live: bool, lite: bool) -> str:
         "BUTTONS": buttons(live, lite),
         "WHOM": whom(readme),
         "EXPLORATION": exploration(live),
-        "INVITATION": "Pull the tower, and the camera." if live else "A tower that is not there.",
+        "QUESTION": QUESTION if live else "",
         "CARDS": "\n".join(card(*row) for row in _ROW.findall(readme)),
-        "WRONG": WRONG,
-        "REPLY": escape(check("camera_centre", camera_centre).message),
+        "ANSWER": answer(live),
     }
     page = TEMPLATE.read_text(encoding="utf-8")
     return re.sub(r"@([A-Z]+)@", lambda found: parts[found[1]], page)
@@ -123,24 +138,31 @@ def exploration(live: bool) -> str:
     return f'{picture}<span class="cvnotes-explore" hidden data-explore="{data}"></span>'
 
 
+def answer(live: bool) -> str:
+    """Write a wrong answer into a box that checks it, or, without Python, what the course says."""
+    if live:
+        return BOX.replace("@", escape(WRONG))
+    return REPLY.replace("@", check("camera_centre", camera_centre).message)
+
+
 def card(number: str, title: str, name: str, question: str) -> str:
     """Write a chapter's card: its richest picture, its name and its question."""
     label = title if number == "★" else f"{int(number)} · {title}"
-    part = parts().get(name, "build, read, use")
     question = re.sub(r"\*(.+?)\*", r"<em>\1</em>", escape(question))
     return (
         f'<li><a href="notebooks/{name}.html"><img src="{FOLDER}/card-{name}.jpg" alt="" '
         f'width="{CARD[0] // 2}" height="{CARD[1] // 2}" loading="lazy">'
-        f"<small>{part}</small> <strong>{escape(label)}</strong> <span>{question}</span></a></li>"
+        f"<small>{parts().get(name, '')}</small> <strong>{escape(label)}</strong> "
+        f"<span>{question}</span></a></li>"
     )
 
 
 @lru_cache(maxsize=1)
 def parts() -> dict[str, str]:
-    """Return whether a chapter builds, reads or uses the camera, as the table of chapter 0 says."""
+    """Return what a chapter does to the camera, and its hours, as the table of chapter 0 says."""
     first = json.loads((ROOT / "notebooks" / "00_start_here.ipynb").read_text(encoding="utf-8"))
     said = "\n".join("".join(cell["source"]) for cell in first["cells"])
-    return {name: part for part, name in _PART.findall(said)}
+    return {name: f"{part} · {hours} h" for part, name, hours in _PART.findall(said)}
 
 
 def put_pictures(made: Path) -> None:

@@ -19,7 +19,7 @@ from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, hexed, mixed
 from cvnotes.targets import refine_subpixel
 
 _BOARD = course.board()
-_SQUARE, _SIDE = _BOARD.square, 2 * _BOARD.square  # mm
+_SQUARE = _BOARD.square  # mm
 _ALPHA, _PANE = 1150, 130  # px, the focal length; mm, how far before the camera its pane is drawn
 _CAMERA = Camera(
     intrinsics(_ALPHA, _ALPHA, 639.5, 479.5),
@@ -90,7 +90,6 @@ def cube_model() -> Model:
         Setting("alpha", "α (px)", 600, 1700, 10, _ALPHA, "the focal length"),
         Setting("lens", "with the lens", 0, 1, 1, 1, "whether the camera's lens is used"),
     )
-    turn = Setting("turn", "turn (°)", -45, 45, 1, 0, "how far it is turned on the board")
     about = (
         "A photograph of a desk with a board, and a tower that stands on the board, drawn by the "
         "camera that was found from the board's corners. Beside it desk, tower and camera from "
@@ -100,7 +99,7 @@ def cube_model() -> Model:
     def draw(paper: Paper, values: Values) -> Drawing:
         camera = believed(values)
         foot, h = np.array([values["x"], values["y"]]), values["height"]
-        base = foot + _turned(values.get("turn", 0)) * _SIDE / 2
+        base = foot + _SQUARE * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
         panel = paper.picture_panel((540, 405), _CAMERA.size, "the photograph: pull the tower")
         panel.image(_in_the_shade(photo(), camera, base, h))
         corners = _draw_tower(panel, camera, base, h)
@@ -111,7 +110,7 @@ def cube_model() -> Model:
                 panel.line(_CAMERA.project(edge), IDEAL, 1.2, dash=4)
         panel.grip("foot", "the foot of the tower", camera.project([*foot, 0]), 5)
         panel.grip("top", "the top of the tower", camera.project([*foot, -h]), 12)
-        title = "from the side: pull the camera, or its picture"
+        title = "from the side: pull the camera, or its glass pane"
         aside = paper.picture_panel((400, 405), _BESIDE.size, title)
         aside.image(_in_the_shade(photo(aside=True), _BESIDE, base, h))
         _draw_tower(aside, _BESIDE, base, h)
@@ -136,7 +135,7 @@ def cube_model() -> Model:
         return {"alpha": _ALPHA * (_along_the_axis(at) + values["away"]) / _PANE}
 
     drags = {"foot": carried, "top": stretched, "camera": moved, "pane": longer}
-    return Model("cube", about, settings, draw, drags, (turn,))
+    return Model("cube", about, settings, draw, drags)
 
 
 def on_board(camera: Camera, m: Array) -> Array:
@@ -151,12 +150,6 @@ def _along_the_axis(at: Array) -> float:
     far = np.arange(-200, 400.0)
     seen = _BESIDE.project(_CAMERA.centre + far[:, None] * _CAMERA.R[2])
     return float(far[np.linalg.norm(seen - at, axis=1).argmin()])
-
-
-def _turned(angle: float) -> Array:
-    """Return the corners (4, 2) of a square of side 2 about the origin, turned."""
-    c, s = np.cos(np.radians(angle)), np.sin(np.radians(angle))
-    return np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]) @ [[c, s], [-s, c]]
 
 
 def _shadow(base: Array, h: float) -> Array:
@@ -233,7 +226,7 @@ def _draw_camera(panel: Panel, camera: Camera, tower: Array) -> None:
     panel.mark(on_pane(drawn(ends)), "estimated", 4)
     panel.mark(centre, "camera", 13, (x, y))
     panel.grip("camera", "the camera, nearer or farther", centre, 4)
-    panel.grip("pane", "its picture: a longer or a shorter focal length", top, 4)
+    panel.grip("pane", "its glass pane: a longer or a shorter focal length", top, 4)
 
 
 def _sentence(values: Values, off: Array) -> str:
@@ -247,7 +240,10 @@ def _sentence(values: Values, off: Array) -> str:
         wrong += ["without its lens"]
     where = f"A tower {values['height']:.0f} mm high at ({values['x']:.0f}, {values['y']:.0f}) mm"
     if not wrong:
-        return f"{where}, by the right camera: no corner is more than {off.max():.2f} px off."
+        return (
+            f"{where}, by the camera that was found: each of its corners is where the true camera "
+            f"sees it, to {off.max():.2f} px."
+        )
     return (
         f"{where}, by a camera {' and '.join(wrong)}: up to {off[:4].max():.1f} px off at its "
         f"foot, and {off[4:].max():.1f} px at its top."

@@ -29,9 +29,9 @@ def straighten_model() -> Model:
     corners = (camera.moved(G).project(board.points) - _MIDDLE) / _ALPHA
     rows = corners.reshape(*board.corners[::-1], 2)
     row = rows[0]
-    settings = (Setting("k1", "k₁", _LOWEST, _HIGHEST, _STEP, 0, "how much bending is taken off"),)
+    settings = (Setting("k1", "k₁", _LOWEST, _HIGHEST, _STEP, 0, "how much bending is removed"),)
     about = (
-        "The photograph of a chessboard in a room, with as much bending taken off as k₁ says; "
+        "The photograph of a chessboard in a room, with as much bending removed as k₁ says; "
         "beside it the uppermost row of corners, and how far it is from a straight line."
     )
 
@@ -44,7 +44,7 @@ def straighten_model() -> Model:
     def draw(paper: Paper, values: Values) -> Drawing:
         lens = Lens(k=(values["k1"],))
         bow = _bow(lens, row)
-        panel = paper.picture_panel(_PICTURE, _SIZE, f"the photograph, {_taken(lens)} taken off")
+        panel = paper.picture_panel(_PICTURE, _SIZE, f"the photograph, {_taken(lens)} removed")
         panel.image(_without(lens, photograph(), paper.sharpness))
         net = _ALPHA * lens.undistort(rows) + _MIDDLE
         m = net[0]
@@ -94,12 +94,13 @@ def _row_panel(paper: Paper, m: Array, bow: Array) -> Panel:
 
 
 def _taken(lens: Lens) -> str:
-    return f"k₁ = {lens.k[0]:.3f}".replace("-", "−") if lens.k[0] else "nothing"
+    k1 = lens.k[0]
+    return f"the bending of k₁ = {k1:.3f}".replace("-", "−") if k1 else "no bending"
 
 
 def _sentence(lens: Lens, bow: Array) -> str:
     most = float(bow[np.abs(bow).argmax()])
-    said = f"With {_taken(lens)} taken off, the uppermost row of corners "
+    said = f"With {_taken(lens)} removed, the uppermost row of corners "
     if abs(most) < 0.05:
         return f"{said}is straight, and so are the sides of the paper."
     return f"{said}bends {'up' if most > 0 else 'down'} by {abs(most):.1f} px."

@@ -249,7 +249,7 @@
 
   // --- The page ---------------------------------------------------------------------------------
 
-  const cells = [...document.querySelectorAll("div.cell")];
+  const cells = [...document.querySelectorAll("div.cell, div.front-answer")];
   const sources = cells.map((cell) => cell.querySelector(".cell_input pre")?.textContent ?? "");
   const imports = sources.filter((source) => /^(from|import) /m.test(source));
   cells.forEach((cell, i) => CALL.test(sources[i]) && boxes.push(new Box(cell, sources[i])));
