@@ -103,7 +103,7 @@ def test_the_keyboard_alone_reaches_all_and_is_held_nowhere(page, live_site):
 def test_the_first_page_leads_to_the_question_and_the_box_for_its_answer(page, live_site):
     page.set_viewport_size({"width": 1280, "height": 900})
     page.goto(f"{live_site}/index.html")
-    page.get_by_role("link", name="try this one").click()
+    page.get_by_role("link", name="finds the right answer").click()
     page.wait_for_function("document.activeElement.id === 'answer-camera_centre'")
     page.wait_for_load_state()
     question = page.get_by_text("Where the camera stands.")
