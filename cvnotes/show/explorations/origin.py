@@ -1,4 +1,4 @@
-"""Explore why the plain DLT errs: a far board that swings about its origin, like a door.
+"""Explore why the plain DLT errs: but for its origin, a far board slides along the rays.
 
 That the answer depends on the coordinates: R. Hartley, "In defense of the eight-point algorithm",
 *PAMI* 19 (1997).
@@ -37,7 +37,7 @@ def origin_model() -> Model:
     )  # fmt: skip
     about = (
         "A far board from the side: where the board is, and where the plain DLT "
-        "believes it, turned about the origin of its coordinates. Below, two nets through its "
+        "believes it: nearer, but for the origin of its coordinates. Below, two nets through its "
         "corners, their shifts enlarged: of the plain DLT, and of the normalised one; and what "
         "the misses cost, of the true homography and of the plain DLT's."
     )
@@ -164,7 +164,7 @@ def _side(paper: Paper, at: Array) -> tuple[Panel, list[float]]:
     panel.text(broken + panel.pixel * np.array([8, 14]), "← camera, 3 m", MUTED, anchor="lm")
     panel.mark(hinge, "world", 6)
     panel.text([hinge[0], low - 45 * panel.pixel], "origin 1.00", WORLD, anchor="mm")
-    panel.grip("hinge", "the origin, which is the hinge", hinge, 10)
+    panel.grip("hinge", "the origin, whose depth is fixed", hinge, 10)
     return panel, ratios
 
 
