@@ -579,6 +579,7 @@ def test_zoomed_by_two_three_quarters_of_the_picture_are_holes():
     assert covered == 105 * 79
     assert folds == 0
     assert abs(holes / covered - 0.75) < 0.01
+    assert "; 75 % stay empty." in drawing.sentence
     left, right = drawing.picture[:, :426], drawing.picture[:, 426:]
     assert count(left, ESTIMATED) / (420 * 316) > 0.65
     assert count(right, ESTIMATED) == 0
@@ -5015,6 +5016,18 @@ def test_the_sun_of_the_width_that_A_gives_is_round_in_its_circle_and_the_guesse
         for which, round_ in ((~below, wide / high), (below, 1)):
             shown = np.ptp(u[which]) / np.ptp(v[which])
             assert shown == pytest.approx(round_, abs=0.04)
+
+
+def test_the_corners_of_the_print_stop_before_its_sun_and_a_frame_that_cuts_it_is_told():
+    model, low = MODELS["poster"], {s.name: s.low for s in MODELS["poster"].settings}
+    for u in (low["u2"], 390, 415):  # along the edges of the print
+        v2, v3 = round(70 + (u - 170) * 86 / 245), round(389 - (u - 172) * 84 / 242)
+        said = model.drawing(u2=u, v2=v2, u3=u, v3=v3).sentence
+        *_, across, down = numbers(said)
+        assert across == pytest.approx(down, abs=2)
+        assert "cut" not in said
+    for pulled in ({"v1": 180, "v2": 215}, {"v3": 240, "v4": 240}):  # edges across the sun
+        assert model.drawing(**pulled).sentence.endswith("and the sun is cut by the frame.")
 
 
 def test_a_board_in_the_air_is_what_both_photographs_say_and_its_rows_are_measured(monkeypatch):

@@ -47,8 +47,11 @@ WRONG = """def my_camera_centre(R, T):
 check("camera_centre", my_camera_centre)"""
 # Before the picture, which follows the hand.
 QUESTION = """<p class="front-question"><strong>Pull the camera nearer</strong> in the picture from
-the side: dashed lines show where the tower belongs. Can you bring it back by pulling only the
-camera's glass pane?</p>"""
+the side, as if we had mistaken where it stood: dashed lines show where the tower belongs. Can you
+bring it back by pulling only the camera's glass pane?</p>"""
+# Below it.
+SOLUTION = """<details><summary>Answer</summary><p>No, one spot at most: where the foot is right,
+the top is not. <a href="notebooks/00_start_here.html">Chapter 0</a> says why.</p></details>"""
 # What docs/static/live/exercises.js makes a box of.
 BOX = """A student's answer is in the box: press *Check*.
 
@@ -74,6 +77,7 @@ def front_page(live: bool, lite: bool) -> str:
         "WHOM": whom(readme),
         "EXPLORATION": exploration(live),
         "QUESTION": QUESTION if live else "",
+        "SOLUTION": SOLUTION if live else "",
         "CARDS": "\n".join(card(*row) for row in _ROW.findall(readme)),
         "ANSWER": answer(live),
     }

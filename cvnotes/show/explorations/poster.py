@@ -23,6 +23,7 @@ _PLACE, _PANEL = ((-20.0, 660.0), (-12.0, 252.0)), (391, 151)  # of each poster;
 _READ = np.array([[170.0, 70], [415, 156], [414, 305], [172, 389]])  # corners, to whole pixels
 _SQUARE = np.array([[0.0, 0], [1, 0], [1, 1], [0, 1]])
 _NAMES = ("upper left", "upper right", "lower right", "lower left")
+_BESIDE_SUN = 362  # px: right of the sun in the photograph
 _RED = 2.0  # so many times as red as green is the sun
 
 
@@ -50,8 +51,12 @@ def poster_model() -> Model:
 
 
 def _limits(i: int) -> tuple[tuple[int, int], tuple[int, int]]:
-    """Return how far, (u, v) to (u, v), a corner may go: the others stay beyond it."""
-    across, down = (120, 280) if i in (1, 4) else (300, 480), (20, 220) if i < 3 else (240, 440)
+    """Return how far, (u, v) to (u, v), a corner may go: the others stay beyond it.
+
+    The right-hand corners, which the page has pulled along the edges, stop before the sun.
+    """
+    across = (120, 280) if i in (1, 4) else (_BESIDE_SUN, 480)
+    down = (20, 220) if i < 3 else (240, 440)
     return (across[0], down[0]), (across[1], down[1])
 
 
@@ -132,5 +137,7 @@ def _straight(paper: Paper, four: Array, wide: int, title: str) -> tuple[Panel, 
     across, down = end - begin + 1
     if not np.isfinite(across):
         return panel, "not to be seen"
+    if begin.min() == 0 or (end == [wide - 1, _HIGH - 1]).any():
+        return panel, "cut by the frame"
     panel.line((begin + end) / 2 + down / 2 * circle(61), IDEAL, 1.3, dash=3)
     return panel, f"{across:.0f} px wide and {down:.0f} px high"

@@ -84,7 +84,8 @@ def _sentence(
 ) -> str:
     return (
         f"Forward: {holes.sum()} of {covered.sum()} pixels are holes, and {folds.sum()} were hit "
-        "more than once. Backward: each new pixel asks exactly once, no holes, no folds."
+        f"more than once; {100 * holes.sum() / covered.sum():.0f} % stay empty. "
+        "Backward: each new pixel asks exactly once, no holes, no folds."
     )
 
 
