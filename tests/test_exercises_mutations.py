@@ -176,7 +176,8 @@ def test_no_mutant_passes_and_none_gets_a_name_that_is_not_its_own(name):
         # NaN has many causes, and so has an exception: what is said of them is said of them alone;
         # and how near an answer comes differs from one input to the next
         if report.misconception not in (None, "nearly") and _is_finite(report):
-            names = {r.misconception for r in again if not r.passed and _is_finite(r)}
+            # (on other data a slip may stay without a name)
+            names = {r.misconception for r in again if not r.passed and _is_finite(r)} - {None}
             assert names <= {report.misconception}, (report.misconception, names, code)
 
 

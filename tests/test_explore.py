@@ -337,7 +337,7 @@ def test_values_no_slider_could_say_are_refused_in_words():
         MODELS["lens"].still(k1=7)
     with pytest.raises(CvnotesError, match="got nan"):
         MODELS["lens"].still(k1=float("nan"))
-    with pytest.raises(CvnotesError, match="expected one of camera, lens, noise"):
+    with pytest.raises(CvnotesError, match="expected one of camera, lens, tilt"):
         explorations.model("zoo")
 
 
