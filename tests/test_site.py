@@ -290,6 +290,26 @@ def test_each_chapter_keeps_a_guess_and_sets_it_beside_its_answer(site, chromium
     page.context.close()
 
 
+# How much room is left and right of each picture.
+BESIDE = """() => [...document.querySelectorAll(".cell_output img")].map((image) => {
+    const outer = image.closest(".cell_output").getBoundingClientRect();
+    const inner = image.getBoundingClientRect();
+    return [inner.left - outer.left, outer.right - inner.right];
+})"""
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_each_picture_stands_in_the_middle(site, chromium, scheme):
+    page = chromium.new_context(
+        viewport={"width": 1280, "height": 900}, color_scheme=scheme
+    ).new_page()
+    page.goto((site / "notebooks" / "07_zhang_calibration.html").as_uri())
+    beside = page.evaluate(BESIDE)
+    assert len(beside) > 10
+    assert [sides for sides in beside if abs(sides[0] - sides[1]) > 1] == []
+    page.context.close()
+
+
 def test_at_1280_px_a_line_of_100_letters_fits_and_what_is_printed_wraps(site, chromium):
     page = chromium.new_page(viewport={"width": 1280, "height": 900})
     longest = 0
