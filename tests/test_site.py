@@ -363,7 +363,8 @@ def test_on_paper_a_chapter_has_all_its_lines_and_figures(site, chromium, tmp_pa
     )
     page.pdf(path=tmp_path / "chapter.pdf", format="A4")
     page.close()
-    read = ["pdftotext", "-layout", tmp_path / "chapter.pdf", "-"]
+    # in the order of the page's own text: by its layout a line that is wrapped can be torn apart
+    read = ["pdftotext", "-raw", tmp_path / "chapter.pdf", "-"]
     text = subprocess.run(read, capture_output=True, text=True, check=True).stdout
     printed = re.sub(r"\s", "", text)
     cells = [c for c in nbformat.read(path, as_version=4).cells if c.cell_type == "code"]
