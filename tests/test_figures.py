@@ -8,6 +8,7 @@ import sys
 
 import numpy as np
 import pytest
+from fontTools.ttLib import TTFont
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from PIL import Image
 
@@ -25,6 +26,7 @@ from cvnotes.show import (
     panels,
     show,
 )
+from cvnotes.show.explorations.lettering import stamp
 from cvnotes.show.picture import encode, packed, pixels_of, with_palette
 from cvnotes.show.style import COLOURS, ESTIMATED, INK, MARKERS
 from cvnotes.targets import Chessboard
@@ -517,3 +519,34 @@ def test_a_photograph_has_ticks_only_where_pixels_are_read_off():
     assert draw_image(GREY).get_xlabel() == ""
     assert list(draw_image(GREY).get_xticks()) == []
     assert draw_image(GREY, ticks=True).get_xlabel() == "u (px)"
+
+
+# --- the type ------------------------------------------------------------------------------------
+
+
+def test_an_index_stands_lower_than_its_letter_and_an_exponent_higher():
+    tops = {}
+    for words in ("x", "xᵤ", "x²"):
+        _, ink, (_, top) = stamp(words, "ls", 40, 0)
+        v, u = np.nonzero(np.asarray(ink))
+        last = v[u > u.max() - 8] + top  # of the part that stands behind
+        tops[words] = last.min(), last.max()
+    assert tops["xᵤ"][1] > tops["x"][1] + 4
+    assert tops["x²"][0] < tops["x"][0] - 4
+    assert tops["x²"][1] < tops["x"][1] - 4
+
+
+@pytest.mark.parametrize("picture", [one_corner(6), chain("H"), eight_projects()])
+def test_a_strip_brings_the_letters_that_it_shows_in_both_weights(picture):
+    for svg in (picture.data.decode(), picture.narrow.decode()):
+        texts = re.findall(r"<text([^>]*)>([^<]+)", svg)
+        kinds = {"600" if 'class="s"' in how else "400" for how, _ in texts}
+        fonts = re.findall(r"font-weight:(\d+);src:url\(data:font/woff;base64,([^)]+)\)", svg)
+        assert {weight for weight, _ in fonts} == kinds
+        for weight, code in fonts:
+            strong = weight == "600"
+            shown = "".join(words for how, words in texts if ('class="s"' in how) == strong)
+            font = TTFont(io.BytesIO(base64.b64decode(code)))
+            lacking = {*map(ord, shown)} - {*font.getBestCmap()}
+            assert lacking <= {*map(ord, "ᵤᵥ⁻★")}, (weight, lacking)  # any system has them
+            assert font["OS/2"].usWeightClass == int(weight)

@@ -42,15 +42,12 @@ __all__ = [
     "draw_segments",
     # the colours
     "draw_meanings",
-    # chapter 3: how an image is formed
-    # chapter 4: lenses
-    # chapters 6, 7 and 9: estimates
-    "draw_plane_error",
     # chapter 7: its strip, the picture of J, a cube on the board
     "chain",
     "draw_arrow",
     "draw_cube",
     # the further exercises
+    "draw_plane_error",
     "eight_projects",
     # in space
     "draw_scene",

@@ -72,13 +72,13 @@ def svg(
     written = re.findall(r"<text([^>]*)>([^<]+)", body)
     faces = ""
     for weight, name in ((400, "Regular"), (600, "Semibold")):
-        letters = {
-            c for how, words in written if ('class="s"' in how) == (weight == 600) for c in words
-        }
-        faces += (
-            f"@font-face{{font-family:cvnotes;font-weight:{weight};"
-            f"src:url(data:font/woff;base64,{_embedded(name, ''.join(sorted(letters)))})}}"
-        )
+        strong = weight == 600
+        letters = {c for how, words in written if ('class="s"' in how) == strong for c in words}
+        if letters:
+            faces += (
+                f"@font-face{{font-family:cvnotes;font-weight:{weight};"
+                f"src:url(data:font/woff;base64,{_embedded(name, ''.join(sorted(letters)))})}}"
+            )
     size = f'width="{round(scale * width)}" height="{round(scale * height)}"'
     return (
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{left} 0 {width} {height}" '
