@@ -777,8 +777,8 @@ def test_the_orange_sheet_is_the_blue_one_once_and_the_bar_is_the_left_cameras(b
     )
     bar = drawing.picture[TITLE:, -150 - MARGIN :].astype(int)
     filled = (np.abs(bar - colour(ESTIMATED)).max(axis=-1) < 40).sum(axis=0).max()
-    assert filled / 270 * 1.14 * 0.19 == pytest.approx(after, abs=0.003)
-    coloured = np.ptp(drawing.picture[TITLE + 3 : TITLE + 265].astype(int), axis=2) > 40
+    assert filled / 240 * 1.14 * 0.19 == pytest.approx(after, abs=0.003)
+    coloured = np.ptp(drawing.picture[TITLE + 3 : TITLE + 235].astype(int), axis=2) > 40
     blue, orange = (coloured[:, at + 3 : at + 330] for at in (MARGIN, MARGIN + 346))
     alike = (blue & orange).sum() / (blue | orange).sum()
     assert (alike > 0.7) == (amount == 1), alike

@@ -18,11 +18,11 @@ from cvnotes.show.style import ESTIMATED, LENS, MUTED, hexed, mixed, rgb
 
 _LENS = "k1 k2 p1 p2"
 _MAGNIFIED, _LIFTED = 100, 45.0  # times; mm by which the sheet hangs over its shadow
-_SHEET, _BAR, _SHOWN = (340, 270), (150, 270), ((-170.0, 170.0), (-135.0, 135.0))
+_SHEET, _BAR, _SHOWN = (340, 240), (150, 240), ((-165.0, 165.0), (-116.5, 116.5))
 _HIGHEST = 0.19  # px, of the bar
 _ROUNDING = 1e-9  # smaller singular values are those of moving or scaling the whole board
 _MOST, _HELD = 2.0, 29  # of the other camera's sheet; the corner that is pulled
-_EYE = Camera(intrinsics(800, 800, 0, 0), look_at([120, 560, -560], [120, 82, -20], up=(0, 0, -1)))
+_EYE = Camera(intrinsics(750, 750, 0, 0), look_at([120, 560, -560], [120, 82, -20], up=(0, 0, -1)))
 _LIGHT = np.array([-0.55, -0.30, -0.78])
 _WHITE, _SHADOW = "#F4F1EA", "#E4E4E4"
 
