@@ -115,7 +115,7 @@ def cube_model() -> Model:
                 panel.line(_CAMERA.project(edge), IDEAL, 1.6, dash=4)
         panel.grip("foot", "the foot of the tower", camera.project([*foot, 0]), 5)
         panel.grip("top", "the top of the tower", camera.project([*foot, -h]), 12)
-        u, v = ((0, 1080), (80, 680)) if paper.narrow else ((160, 960), (0, 810))
+        u, v = ((0, 1080), (95, 665)) if paper.narrow else ((160, 960), (0, 810))
         size, title = (
             (np.ptp(u) // 2, np.ptp(v) // 2),
             "from the side: pull the camera, or its glass pane",
