@@ -116,11 +116,9 @@ def cube_model() -> Model:
         panel.grip("foot", "the foot of the tower", camera.project([*foot, 0]), 5)
         panel.grip("top", "the top of the tower", camera.project([*foot, -h]), 12)
         u, v = ((0, 1080), (95, 665)) if paper.narrow else ((160, 960), (0, 810))
-        size, title = (
-            (np.ptp(u) // 2, np.ptp(v) // 2),
-            "from the side: pull the camera, or its glass pane",
-        )
-        aside = paper.panel(size, (u[0] - 0.5, u[1] - 0.5), (v[0] - 0.5, v[1] - 0.5), title)
+        shown = (np.ptp(u) // 2, np.ptp(v) // 2)  # px of the page
+        title = "from the side: pull the camera, or its glass pane"
+        aside = paper.panel(shown, (u[0] - 0.5, u[1] - 0.5), (v[0] - 0.5, v[1] - 0.5), title)
         beside = _in_the_shade(photo(aside=True), _BESIDE, base, h)
         aside.image(beside[slice(*v), slice(*u)])
         _draw_tower(aside, _BESIDE, base, h)
