@@ -51,7 +51,10 @@ addEventListener("DOMContentLoaded", () => {
 
 // What a paragraph is for, its first words say: they have a colour (site.css).
 addEventListener("DOMContentLoaded", () => {
-  const kinds = { Careful: "careful", Verify: "verify", Change: "try", Guess: "try", Now: "try" };
+  const kinds = {
+    Careful: "careful", Verify: "verify", Change: "try", Guess: "try",
+    Time: "meta", You: "meta", Notes: "meta", // at the head of a chapter
+  };
   for (const first of document.querySelectorAll(".bd-article:has(.cell) p > strong:first-child")) {
     const kind = first.previousSibling ? null : kinds[/^\w+/.exec(first.textContent)?.[0]];
     if (kind) first.classList.add("aim", kind);

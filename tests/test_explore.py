@@ -1321,7 +1321,7 @@ def test_the_rod_gets_its_two_metres_from_the_box_by_a_vanishing_point(u, v):
 
 
 def test_a_tower_stands_where_the_photographed_board_has_its_squares():
-    tower, photo = MODELS["cube"], np.asarray(cube.photo().lit).mean(axis=2)
+    tower, photo = MODELS["cube"], np.asarray(cube.photo()).mean(axis=2)
     for x, y, lens in ((0, 0, 1), (200, 125, 1), (100, 50, 0)):
         drawing = tower.drawing(x=x, y=y, lens=lens, height=150)
         grips = {grip.name: np.array(grip.at) for grip in drawing.grips}
@@ -2825,7 +2825,7 @@ def test_between_four_pixels_each_is_drawn_as_large_as_it_weighs():
         value = ndimage.map_coordinates(grey.reshape(2, 2).astype(float), [[dv], [du]], order=1)[0]
         assert numbers(drawing.sentence.partition("=")[2])[0] == pytest.approx(value, abs=0.051)
         # The square between the centres begins 0.36 of 1.72 from the border of its panel.
-        low, high = round(330 * 0.36 / 1.72), round(330 * 1.36 / 1.72)
+        low, high = round(400 * 0.36 / 1.72), round(400 * 1.36 / 1.72)
         square = drawing.picture[TITLE + low : TITLE + high, MARGIN + low : MARGIN + high, 0]
         weights = [(1 - du) * (1 - dv), du * (1 - dv), (1 - du) * dv, du * dv]
         # Lines, words and the pixels themselves cover some of it.

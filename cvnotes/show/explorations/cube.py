@@ -2,10 +2,9 @@
 
 from functools import lru_cache
 from itertools import product
-from typing import NamedTuple
 
 import numpy as np
-from PIL import Image, ImageChops, ImageDraw, ImageFilter
+from PIL import Image, ImageDraw, ImageFilter
 
 from cvnotes.base import Array
 from cvnotes.calibration import pose_from_view
@@ -44,22 +43,13 @@ _COURSE, _STOREY = 5, 24  # mm, how high a row of bricks is, and a row of window
 _EDGES = [(i, (i + 1) % 4 + i // 4 * 4) for i in range(8)] + [(i, i + 4) for i in range(4)]
 _SIDES = [[i + 3, i + 4, i, i - 1] for i in range(1, 4)]
 _FACES = np.array([[4, 5, 6, 7], [7, 4, 0, 3], *_SIDES])  # the roof, and the sides
-_SHADED, _SOFT = 0.42, 6  # what a shadow leaves of the light; px of its edge
-_CLOSE, _NEAR = 210, 14  # of 255, how dark it is under a foot; px that this reaches
-
-
-class _Photo(NamedTuple):
-    """A photograph of the desk, lit and in the shade."""
-
-    lit: Image.Image
-    dark: Image.Image
+_SHADED, _SOFT = 0.42, 8  # what a shadow leaves of the light; px of its edge
 
 
 @lru_cache(maxsize=2)
-def photo(aside: bool = False) -> _Photo:
+def photo(aside: bool = False) -> Image.Image:
     """Photograph the desk, by the camera or from the side."""
-    lit = render_scene(desk(_BOARD), _BESIDE if aside else _CAMERA)
-    return _Photo(Image.fromarray(lit), Image.fromarray((lit * _SHADED).astype(np.uint8)))
+    return Image.fromarray(render_scene(desk(_BOARD), _BESIDE if aside else _CAMERA))
 
 
 @lru_cache(maxsize=2)
@@ -68,7 +58,7 @@ def found(lens: bool) -> Camera:
 
     On a page there is no OpenCV, and so no finder of boards: whole pixels are its start.
     """
-    grey = np.asarray(photo().lit).mean(axis=2)
+    grey = np.asarray(photo()).mean(axis=2)
     m = refine_subpixel(grey, _CAMERA.project(_BOARD.points).round())
     bare = Camera(_CAMERA.A, lens=_CAMERA.lens if lens else Lens(), size=_CAMERA.size)
     return bare.moved(pose_from_view(bare, _BOARD.points, m))
@@ -168,18 +158,14 @@ def _shadow(boxes: Array) -> Array:
     return np.concatenate([ends[0], swept[:, :, [0, 1, 3, 2]].reshape(-1, 4, 2)])
 
 
-def _in_the_shade(of: _Photo, camera: Camera, base: Array, h: float) -> Drawn:
-    """Darken what lies in the tower's shadow, and, softer, what lies close round its foot."""
-    seen = camera.project(np.insert(_shadow(tower(base.mean(axis=0), h)), 2, 0, axis=-1))
-    w, height = camera.size
-    mask = Image.new("L", (w // 2, height // 2))
-    for corners in seen / 2:
+def _in_the_shade(lit: Image.Image, camera: Camera, base: Array, h: float) -> Drawn:
+    """Darken what lies in the tower's shadow, and what lies close round its foot."""
+    fallen = [*_shadow(tower(base.mean(axis=0), h)), base]
+    mask = Image.new("L", (camera.size[0] // 2, camera.size[1] // 2))
+    for corners in camera.project(np.insert(fallen, 2, 0, axis=-1)) / 2:
         ImageDraw.Draw(mask).polygon(corners.ravel().tolist(), 255)
-    soft = mask.filter(ImageFilter.GaussianBlur(_SOFT / 2))
-    foot, round_it = camera.project(np.insert(base, 2, 0, axis=-1)) / 2, Image.new("L", mask.size)
-    ImageDraw.Draw(round_it).polygon(foot.ravel().tolist(), _CLOSE)
-    round_it = ImageChops.lighter(soft, round_it.filter(ImageFilter.GaussianBlur(_NEAR / 2)))
-    return np.asarray(Image.composite(of.dark, of.lit, round_it.resize(camera.size)))
+    soft = mask.filter(ImageFilter.GaussianBlur(_SOFT / 2)).resize(camera.size)
+    return np.asarray(Image.composite(lit.point(lambda level: _SHADED * level), lit, soft))
 
 
 def tower(foot: Array, h: float) -> Array:
