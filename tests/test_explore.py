@@ -2380,32 +2380,6 @@ def test_a_ball_is_divided_by_its_depth_on_the_glass_and_hangs_on_its_line():
         assert model.dragged("ball", tuple(there), x=x)["z"] == pytest.approx(z)
 
 
-def test_the_ray_of_a_point_meets_the_enlarged_sensor_where_its_row_counts_it():
-    """From above 120 mm are 400 px and 370 mm are 300 px; of the row 3.584 mm are 400 px."""
-    for x, z, f, du in ((30, 250, 4, 0.005), (-40, 300, 6.5, 0.008), (45, 320, 8, 0.004)):
-        drawing = MODELS["pixels"].drawing(x=x, z=z, f=f, du=du)
-        length = f * x / z
-        *_, mm, pitch, px, centre, u = numbers(drawing.sentence)
-        expected = [length, du, length / du, 325, 325 + length / du]
-        assert np.allclose([mm, pitch, px, centre, u], expected, atol=0.051)
-        assert abs(mm - length) < 0.0051
-        plan, row = (
-            drawing.picture[TITLE : TITLE + 300, left + MARGIN : left + MARGIN + 400].astype(int)
-            for left in (0, 406)
-        )
-        # The sensor's length from the axis to the ray is as thick as no other line.
-        level = round((345 - 20 * f) / 370 * 300)
-        blue = (np.abs(plan[level - 1] - colour(LENS)).max(-1) < 40).nonzero()[0]
-        ends = sorted([200, 200 + 20 * length / 120 * 400])
-        assert blue[[0, -1]] == pytest.approx(ends, abs=3)
-        orange = (np.abs(row[150] - colour(ESTIMATED)).max(-1) < 60).nonzero()[0]
-        assert orange.mean() == pytest.approx(200 + length / 3.584 * 400, abs=1)
-    # Pixels twice as wide are half as many, and the length in mm stays.
-    counts = [numbers(MODELS["pixels"].drawing(du=du).sentence) for du in (0.005, 0.01)]
-    assert counts[0][-5] == counts[1][-5]
-    assert counts[0][-3] == 2 * counts[1][-3]
-
-
 def test_a_vector_is_turned_about_n_on_the_circle_of_its_part_across(monkeypatch):
     draw, arrows = Panel.arrows, []
 
@@ -3921,7 +3895,6 @@ FREE_TO_MOVE = {
     "walks": {"X": 200},
     "six": {"alpha_u": 600, "alpha_v": 600},
     "formation": {"X": 200},
-    "pixels": {"f": 6},
     "homography": {"dv2": 40, "dv3": -40},
     "moved": {"who": 50},
     ("pinhole", "focus"): {"lens": 1, "focus": 1},

@@ -17,8 +17,7 @@ from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, mixed
 _SPACE, _BESIDE, _WORDS, _FINER = (470, 360), (330, 248), (330, 84), 2
 _STANDS = np.array([-0.9, 0, 1.5])  # m: the camera's place in the room; all else is in its frame
 _Y, _FLOOR, _RADIUS = 0.2, 1.6, 0.16  # m: of the ball
-_SEEN = np.array([0.8, 0.6])  # how far from the axis the glass reaches, 1 m before the camera
-_GLASS = np.insert(_SEEN * [[-1, -1], [1, -1], [1, 1], [-1, 1]], 2, 1, axis=1)
+_GLASS = np.array([[-0.8, -0.6, 1], [0.8, -0.6, 1], [0.8, 0.6, 1], [-0.8, 0.6, 1]])
 _ASIDE = Camera(intrinsics(430, 430, 234.5, 179.5), look_at([3, -1.1, -1.7], [0.48, 0.33, 2]))
 _SHADOW, _DARK, _LIGHT = "#9A8C80", "#C25400", "#FFD0A0"
 
@@ -30,9 +29,8 @@ def glass_model() -> Model:
         Setting("z", "z (m)", 1.6, 5, 0.1, 2, "its depth"),
     )
     about = (
-        "A camera in a room, from outside, with a glass 1 m before it, its picture upon that, and "
-        "a line of sight from a ball through the glass. Beside it the picture, and below this x "
-        "and y of the ball, divided by its depth z."
+        "A camera in a room, from outside, with its picture on a glass 1 m before it, and a line "
+        "of sight from a ball. Beside it the picture, and the ball's x and y, divided by its depth."
     )
 
     def pulled(values: Values, at: Array) -> Values:
@@ -48,14 +46,13 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     space = paper.picture_panel(_SPACE, _SPACE, "from outside: pull the ball along its line")
     space.image(_scene())
     _draw_space(space, M)
-    x, y = _SEEN
-    plane = paper.panel(_BESIDE, (-x, x), (-y, y), "on the glass, the plane z = 1")
+    plane = paper.panel(_BESIDE, (-0.8, 0.8), (-0.6, 0.6), "on the glass, the plane z = 1")
     plane.image(_photograph())
     plane.veil([(_shadow(M) / _shadow(M)[:, 2:])[:, :2]], [_SHADOW])
     _draw_ball(plane, _discs(M, np.eye(2, 3)), lambda W: W[..., :2] / W[..., 2:])
     plane.arrows([[0, 0], [0, 0]], [[0.25, 0], [0, 0.25]], CAMERA, 2)
-    for at, name in (([0.3, 0], "x"), ([0, 0.3], "y")):
-        plane.text(at, name, CAMERA, anchor="mm", size=15)
+    plane.text([0.3, 0], "x", CAMERA, anchor="mm", size=15)
+    plane.text([0, 0.3], "y", CAMERA, anchor="mm", size=15)
     plane.mark(xy, "ideal", 6)
     words = paper.panel(_WORDS, (0, 1), (0, 1), "divided by the depth")
     for part, row, name, number in zip(xy, (0.28, 0.72), "xy", M[:2], strict=True):
@@ -75,8 +72,7 @@ def _draw_space(panel: Panel, M: Array) -> None:
     panel.line(_ASIDE.project(along + on_floor), "#FFFFFF", 1.2)
     for place in along[1:] + on_floor:
         panel.line(_ASIDE.project(place + [[-0.1, 0, 0], [0.1, 0, 0]]), "#FFFFFF", 1.6)
-        at = _ASIDE.project(place + [0.26, 0, 0])
-        panel.text(at, f"{place[2]:.0f} m", IDEAL, anchor="mm", size=13)
+        panel.text(_ASIDE.project(place + [0.14, 0, 0]), f"{place[2]:.0f} m", IDEAL, size=13)
     panel.veil([_ASIDE.project(_shadow(M))], [_SHADOW])
     eye, glass, ball = _ASIDE.project([0 * M, M / M[2], M])
     panel.line([beyond(_ASIDE.project(_GLASS), glass, ball), ball], ESTIMATED, 2.4)

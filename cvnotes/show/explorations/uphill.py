@@ -1,7 +1,7 @@
 """Explore the way back through a lens: from a seen radius to the ideal one, in steps."""
 
 from collections.abc import Callable
-from itertools import pairwise
+from itertools import accumulate, pairwise
 
 import numpy as np
 
@@ -14,18 +14,15 @@ from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED
 _K1 = -0.4
 _LENS = Lens(k=(_K1,))
 _ROOM, _CLOSE, _WHOLE = (330, 205), (460, 272), (460, 138)  # px
-_HIGH, _END = 0.66, 1.12  # of the rooms, half as high; of the curve
-_F, _NEAR, _MOST = 800, 0.1, 500  # px; px; rounds until a method is given up
-_DRAWN = {"Newton": 8, "dividing": 60}  # rounds
+_HIGH, _END, _F = 0.66, 1.12, 800  # of the rooms, half as high; of the curve; px
 
 
 def uphill_model() -> Model:
     """Make the model of a point that a lens shows, and of two ways to where it came from."""
     settings = (Setting("seen", "r′", 0.5, 0.65, 0.0002, 0.6056, "where the lens shows the point"),)
     about = (
-        "A room through a lens with a point at r′; below, without the lens, where guess after "
-        "guess puts it. Beside it r L(r) over r: Newton's method climbs along the tangent up to "
-        "the height r′, dividing along the line from the origin."
+        "A room through a lens with a point at r′; below, without the lens, guesses where it is. "
+        "Beside it r L(r) over r: Newton climbs along tangents to r′, dividing along lines from 0."
     )
     drags = {
         "point": lambda _, at: {"seen": float(np.hypot(*at))},
@@ -48,42 +45,32 @@ def _newton(r: float, seen: float) -> float:
 
 def _guesses(step: Callable[[float, float], float], seen: float, rounds: int) -> list[float]:
     """Return the first guess, r′ itself, and those after each round."""
-    guesses = [seen]
-    for _ in range(rounds):
-        guesses.append(step(guesses[-1], seen))
-    return guesses
+    return list(accumulate(range(rounds), lambda r, _: step(r, seen), initial=seen))
 
 
 def _draw(paper: Paper, values: Values) -> Drawing:
     seen = values["seen"]
     ideal = float(_LENS.undistort([seen, 0.0])[0])
-    ways = {
-        name: _guesses(step, seen, _DRAWN[name])
-        for name, step in (("dividing", _divided), ("Newton", _newton))
-    }
+    newton, divided = _guesses(_newton, seen, 8), _guesses(_divided, seen, 60)
     wide = _HIGH * _ROOM[0] / _ROOM[1]
-    rooms = []
-    for lens, title in (
-        (_LENS, "through the lens: pull the point"),
-        (Lens(), "without it: Newton's guesses"),
-    ):
-        room = paper.panel(_ROOM, (-wide, wide), (-_HIGH, _HIGH), title)
+    x, y = (-wide, wide), (-_HIGH, _HIGH)
+    through = paper.panel(_ROOM, x, y, "through the lens: pull the point")
+    without = paper.panel(_ROOM, x, y, "without it: Newton's guesses")
+    for room, lens in ((through, _LENS), (without, Lens())):
         room.image(bent_room(lens, room.x, room.y, _ROOM, paper.sharpness, 1))
-        rooms.append(room)
-    through, without = rooms
     draw_fold(through, _LENS)
     through.line([[0, 0], [seen, 0]], LENS, 2)
     through.mark([seen, 0], "lens", 9)
     through.grip("point", "the point that the lens shows", [seen, 0], 1)
     without.line([[0, 0], [wide, 0]], IDEAL, 1, dash=4)
-    without.mark([[r, 0] for r in ways["Newton"] if r > 0], "estimated", 7)
+    without.mark([[r, 0] for r in newton if r > 0], "estimated", 7)
     without.mark([ideal, 0], "ideal", 10)
     close = paper.panel(_CLOSE, (0.46, 1.06), (0.66, 0.41), "the steps: pull the height r′")
     whole = paper.panel(_WHOLE, (0, _END), (0.72, -0.04), "the whole curve: r L(r) over r")
     for panel in (close, whole):
         _draw_curve(panel, seen, ideal)
-        for name, ink, width in (("dividing", MUTED, 0.9), ("Newton", ESTIMATED, 2.4)):
-            _draw_steps(panel, ways[name], seen, ink, width)
+        _draw_steps(panel, divided, seen, MUTED, 0.9)
+        _draw_steps(panel, newton, seen, ESTIMATED, 2.4)
     close.grip("height", "the height r′", [0.49, seen], 1)
     close.text([0.475, seen - 0.018], f"r′ = {seen:.4f}", IDEAL, size=15)
     whole.text([0.56, 0.26], "Newton: along the tangent", ESTIMATED, size=14)
@@ -117,11 +104,11 @@ def _sentence(seen: float, ideal: float) -> str:
     said = f"Seen at r′ = {seen:.4f}"
     if np.isnan(ideal):
         return f"{said}, above the top of the curve: no ideal point is seen there, and both fail."
-    counts = [
-        next(n for n, r in enumerate(_guesses(step, seen, _MOST)) if _F * abs(r - ideal) < _NEAR)
+    newton, divided = (
+        next(n for n, r in enumerate(_guesses(step, seen, 500)) if _F * abs(r - ideal) < 0.1)
         for step in (_newton, _divided)
-    ]
+    )
     return (
         f"{said}: r = {ideal:.3f}. To a tenth of a pixel, with f = {_F} px, Newton's method takes "
-        f"{counts[0]} rounds, dividing {counts[1]}."
+        f"{newton} rounds, dividing {divided}."
     )
