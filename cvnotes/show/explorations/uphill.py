@@ -13,7 +13,7 @@ from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED
 
 _K1 = -0.4
 _LENS = Lens(k=(_K1,))
-_ROOM, _CLOSE, _WHOLE = (330, 205), (460, 272), (460, 138)  # px
+_ROOM, _CLOSE, _WHOLE = (330, 190), (460, 250), (460, 130)  # px
 _HIGH, _END, _F = 0.66, 1.12, 800  # of the rooms, half as high; of the curve; px
 
 
