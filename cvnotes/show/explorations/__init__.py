@@ -30,9 +30,9 @@ _STORIES = (
     "moved", "eleventh", "columns", "between", "rings", "plane", "epipolar", "rectification",
     "disparity", "depth", "cube", "conic", "seam", "swing", "frame", "meet", "residuals",
     "hinge", "horizon", "nails", "origin", "similar", "clicks", "zoom", "rim", "decentred",
-    "rail", "protractor", "asks", "glass", "stop", "rodrigues", "push", "wishes",
-    "bowl", "rows", "parabola", "six", "parallel", "roll", "warp", "poster", "thirteen",
-    "imitation", "uphill",
+    "rail", "protractor", "asks", "glass", "stop", "rodrigues", "push", "wishes", "bowl", "rows",
+    "entries", "parabola", "six", "parallel", "roll", "warp", "poster", "thirteen", "imitation",
+    "uphill",
 )  # fmt: skip
 __all__ = ["NAMES", "pull_points", "explore", "model"]
 NAMES = (*_MODELS, *_STORIES)
