@@ -1107,36 +1107,6 @@ def test_a_line_of_sight_climbs_with_its_point_and_ends_parallel_to_the_rails():
     assert count(beside[0], LENS) > count(beside[1], LENS) + 100  # 100 px of gap, and none
 
 
-def test_a_dot_stays_in_its_class_wherever_it_is_pulled_and_is_divided_beside():
-    model = MODELS["pairs"]
-    for x, w in ((2, 1.5), (-1.5, -1), (0.3, 0.7)):
-        assert numbers(model.drawing(x=x, w=w).sentence) == [round(w * x, 2), w, w, x, 1, 1, x]
-        for at in ((3, 1), (-2, 0.5), (0.1, -3)):
-            pulled = model.dragged("pair", at, x=x, w=w)
-            nearest = np.dot(at, [x, 1]) / (x**2 + 1)
-            assert pulled["x"] == x
-            assert pulled["w"] == pytest.approx(np.clip(nearest, -1.2, 2), abs=0.05 + 1e-9)
-    assert model.dragged("number", (-1.3, 0.4)) == {"x": -1.3, "w": 0.5}
-    nothing, some = (model.picture(w=w)[:, 600:] for w in (0, 1.5))
-    assert count(nothing, ESTIMATED) > 3  # 0 / 0 is asked, not answered
-    assert count(some, ESTIMATED) == 0
-    assert "every line" in model.drawing(w=0).sentence
-
-
-@pytest.mark.parametrize("x", [-1.6, 0, 2])
-def test_every_dot_of_a_class_lies_on_its_line_and_where_it_is_pulled_the_number_stays(x):
-    model = MODELS["pairs"]
-    for w in (-1, -0.5, 0.5, 1.5):  # grey dots; and the black one upon them
-        for pulled, ink, least in ((2, MUTED, 25), (w, IDEAL, 60)):
-            picture = model.picture(x=x, w=pulled)
-            u, v = MARGIN + (w * x + 5.4) / 10.8 * 590, TITLE + (2.55 - w) / 4.95 * 270
-            around = picture[round(v) - 6 : round(v) + 7, round(u) - 6 : round(u) + 7]
-            assert count(around, ink) > least
-    right = [model.picture(x=x, w=w)[150:, 605:] for w in (-1, 0.5, 1.5)]
-    assert np.array_equal(right[0], right[1])
-    assert np.array_equal(right[1], right[2])
-
-
 def test_the_ruler_reads_what_the_camera_photographed_and_errs_as_far_as_a_click():
     P = Camera(course.camera().A).P
     for t in (10, 25, 50, 75, 200):  # m behind the first pole
@@ -3912,7 +3882,6 @@ FREE_TO_MOVE = {
     "meet": {"b2": 0.4},
     "finding": {"step": 1.5},
     "triangle": {"Z_u": 900, "turn": 40},
-    "pairs": {"x": 1, "w": 0.5},
     "tilt": {"tilt": 30},
     "stands": {"alpha": 800},
     "straighten": {"k1": -0.1},
@@ -3949,7 +3918,6 @@ ON_A_WAY = {  # along a curve, by its x
     ("pinhole", "focus"),
     ("ruler", "foot"),
     ("rail", "rail"),
-    ("pairs", "number"),
     ("ransac", "draw"),
     ("rings", "place"),
     ("clouds", "window"),
@@ -3989,7 +3957,6 @@ ON_A_CURVE = {  # its nearest place
     ("twins", "other"),
     ("twins", "box"),
     ("plane", "depth"),
-    ("pairs", "pair"),
     ("frame", "corner"),
     ("cube", "camera"),
     ("cube", "pane"),

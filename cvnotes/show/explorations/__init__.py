@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 _MODELS = ("camera", "lens", "tilt")
 # or of what the course itself has photographed or thought of.
 _STORIES = (
-    "straighten", "stands", "pairs", "ring", "maps", "ruler", "eye", "rod", "shadows", "forged",
+    "straighten", "stands", "ring", "maps", "ruler", "eye", "rod", "shadows", "forged",
     "triangle", "formation", "pinhole", "dolly", "walks", "gimbal", "fisheye", "clouds",
     "subpixel", "votes", "twins", "ellipse", "ransac", "homography", "fold", "folds", "finding",
     "moved", "eleventh", "columns", "between", "rings", "plane", "epipolar", "rectification",
