@@ -1205,13 +1205,17 @@ def test_lines_along_the_rails_meet_at_the_rim_of_the_map():
                        [[0.3, 0.4], [0, 0.5], [-3 / 7, 0]], atol=1e-12)  # fmt: skip
 
 
+def eye_of(tilt, roll):
+    """Return A and R of a camera so tilted and rolled, in degrees."""
+    A = np.array([[800, 0, 325], [0, 800, 238], [0, 0, 1]])
+    turns = [0, 0, np.radians(roll)], [np.radians(tilt), 0, 0], [0, 0.05, 0]
+    return A, np.linalg.multi_dot([rotation_from_angles(*turn) for turn in turns])
+
+
 @pytest.mark.parametrize("height", [0.5, 1.95, 4, 6, 8])
 def test_the_horizon_stays_and_cuts_the_poles_as_high_as_the_eye(height):
     drawing = MODELS["eye"].drawing(height=height)
-    A, R = (
-        np.array([[800, 0, 325], [0, 804, 238], [0, 0, 1]]),
-        rotation_from_angles(0.06, 0.05, 0.14),
-    )
+    A, R = eye_of(3.4, 7.8)
     a, b, c = np.linalg.inv(A).T @ R[:, 1]
 
     def around(x, y, z, reach=2):
@@ -1242,7 +1246,8 @@ def test_the_horizon_stays_and_cuts_the_poles_as_high_as_the_eye(height):
 @pytest.mark.parametrize("height", [0.5, 2, 6, 8])
 def test_the_grass_reaches_up_to_the_horizon_however_high_the_eye(height):
     picture = MODELS["eye"].drawing(height=height).picture.astype(int)
-    a, b, c = np.linalg.inv(course.camera().A).T @ rotation_from_angles(0.06, 0.05, 0.14)[:, 1]
+    A, R = eye_of(3.4, 7.8)
+    a, b, c = np.linalg.inv(A).T @ R[:, 1]
     for u in (20, 60, 540, 630):
         column, row = (np.array([u, -(a * u + c) / b]) + 0.5) * WIDTH / 640 + [MARGIN, TITLE]
         _, green, blue = picture[TITLE:, round(column)].T
@@ -3429,17 +3434,18 @@ def test_the_ray_is_parallel_to_the_rods_and_pierces_the_glass_where_their_pictu
 
 @pytest.mark.parametrize(("tilt", "roll"), [(3.4, 7.8), (10, -25), (0.5, 20)])
 def test_a_horizon_is_pulled_to_where_a_camera_so_tilted_and_rolled_sees_it(tilt, roll, lines):
-    drawing = MODELS["roll"].drawing(tilt=tilt, roll=roll)
+    drawing = MODELS["eye"].drawing(tilt=tilt, roll=roll)
     near = np.array(grip_of(drawing, "horizon").at)
-    t, turn = np.radians([tilt, roll])
-    R = rotation_from_angles(0, 0, turn) @ rotation_from_angles(t, 0, 0)
-    camera = Camera(intrinsics(800, 800, 325, 238), pose(R, [0, 0, 0]))
+    A, R = eye_of(tilt, roll)
+    camera = Camera(A, pose(R, [0, 0, 0]))
     ends = camera.vanishing_point(np.array([[0.3, 0, 1.0], [-0.2, 0, 1]]))
     skyline = next(xy for _, xy, ink, _ in lines if ink == IDEAL)
     for at in (near, *skyline):
         assert abs(np.linalg.det([*(at - ends[:1]), ends[1] - ends[0]])) < 0.5
-    assert np.linalg.norm(near - [325, 238]) == pytest.approx(800 * np.tan(t), rel=1e-4)
-    pulled = MODELS["roll"].dragged("horizon", tuple(near))
+    assert np.linalg.norm(near - [325, 238]) == pytest.approx(
+        800 * np.tan(np.radians(tilt)), rel=1e-4
+    )
+    pulled = MODELS["eye"].dragged("horizon", tuple(near))
     assert [pulled["tilt"], pulled["roll"]] == [tilt, roll]
 
 
@@ -3902,7 +3908,7 @@ FREE_TO_MOVE = {
     ("swing", "row 5"): {"row": 5},
     "similar": {"f": 7},
     "clicks": {"noise": 0.4},
-    "roll": {"tilt": 9, "roll": 0},
+    "eye": {"tilt": 9, "roll": 0},
     "thirteen": {"pair": 5},
     "stop": {"stop": 0},
     "imitation": {"turn": -60},
@@ -4903,6 +4909,7 @@ def test_what_is_folded_can_be_pulled_from_where_it_stands_and_switches_stay(nam
 
 # Where six and more sliders stood under a picture that says them all, and some with fewer.
 FOLDED = {
+    "eye",
     "bowl",
     "cube",
     "six",

@@ -31,7 +31,7 @@ _STORIES = (
     "disparity", "depth", "cube", "conic", "seam", "swing", "frame", "meet", "residuals",
     "hinge", "horizon", "nails", "origin", "similar", "clicks", "zoom", "rim", "decentred",
     "rail", "protractor", "asks", "divide", "stop", "pixels", "rodrigues", "push", "wishes",
-    "bowl", "rows", "parabola", "six", "parallel", "roll", "warp", "poster", "thirteen",
+    "bowl", "rows", "parabola", "six", "parallel", "warp", "poster", "thirteen",
     "imitation",
 )  # fmt: skip
 __all__ = ["NAMES", "pull_points", "explore", "model"]
