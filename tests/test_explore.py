@@ -1107,36 +1107,6 @@ def test_a_line_of_sight_climbs_with_its_point_and_ends_parallel_to_the_rails():
     assert count(beside[0], LENS) > count(beside[1], LENS) + 100  # 100 px of gap, and none
 
 
-def test_a_dot_stays_in_its_class_wherever_it_is_pulled_and_is_divided_beside():
-    model = MODELS["pairs"]
-    for x, w in ((2, 1.5), (-1.5, -1), (0.3, 0.7)):
-        assert numbers(model.drawing(x=x, w=w).sentence) == [round(w * x, 2), w, w, x, 1, 1, x]
-        for at in ((3, 1), (-2, 0.5), (0.1, -3)):
-            pulled = model.dragged("pair", at, x=x, w=w)
-            nearest = np.dot(at, [x, 1]) / (x**2 + 1)
-            assert pulled["x"] == x
-            assert pulled["w"] == pytest.approx(np.clip(nearest, -1.2, 2), abs=0.05 + 1e-9)
-    assert model.dragged("number", (-1.3, 0.4)) == {"x": -1.3, "w": 0.5}
-    nothing, some = (model.picture(w=w)[:, 600:] for w in (0, 1.5))
-    assert count(nothing, ESTIMATED) > 3  # 0 / 0 is asked, not answered
-    assert count(some, ESTIMATED) == 0
-    assert "every line" in model.drawing(w=0).sentence
-
-
-@pytest.mark.parametrize("x", [-1.6, 0, 2])
-def test_every_dot_of_a_class_lies_on_its_line_and_where_it_is_pulled_the_number_stays(x):
-    model = MODELS["pairs"]
-    for w in (-1, -0.5, 0.5, 1.5):  # grey dots; and the black one upon them
-        for pulled, ink, least in ((2, MUTED, 25), (w, IDEAL, 60)):
-            picture = model.picture(x=x, w=pulled)
-            u, v = MARGIN + (w * x + 5.4) / 10.8 * 590, TITLE + (2.55 - w) / 4.95 * 270
-            around = picture[round(v) - 6 : round(v) + 7, round(u) - 6 : round(u) + 7]
-            assert count(around, ink) > least
-    right = [model.picture(x=x, w=w)[150:, 605:] for w in (-1, 0.5, 1.5)]
-    assert np.array_equal(right[0], right[1])
-    assert np.array_equal(right[1], right[2])
-
-
 def test_the_ruler_reads_what_the_camera_photographed_and_errs_as_far_as_a_click():
     P = Camera(course.camera().A).P
     for t in (10, 25, 50, 75, 200):  # m behind the first pole
@@ -1235,13 +1205,17 @@ def test_lines_along_the_rails_meet_at_the_rim_of_the_map():
                        [[0.3, 0.4], [0, 0.5], [-3 / 7, 0]], atol=1e-12)  # fmt: skip
 
 
+def eye_of(tilt, roll):
+    """Return A and R of a camera so tilted and rolled, in degrees."""
+    A = np.array([[800, 0, 325], [0, 800, 238], [0, 0, 1]])
+    turns = [0, 0, np.radians(roll)], [np.radians(tilt), 0, 0], [0, 0.05, 0]
+    return A, np.linalg.multi_dot([rotation_from_angles(*turn) for turn in turns])
+
+
 @pytest.mark.parametrize("height", [0.5, 1.95, 4, 6, 8])
 def test_the_horizon_stays_and_cuts_the_poles_as_high_as_the_eye(height):
     drawing = MODELS["eye"].drawing(height=height)
-    A, R = (
-        np.array([[800, 0, 325], [0, 804, 238], [0, 0, 1]]),
-        rotation_from_angles(0.06, 0.05, 0.14),
-    )
+    A, R = eye_of(3.4, 7.8)
     a, b, c = np.linalg.inv(A).T @ R[:, 1]
 
     def around(x, y, z, reach=2):
@@ -1272,7 +1246,8 @@ def test_the_horizon_stays_and_cuts_the_poles_as_high_as_the_eye(height):
 @pytest.mark.parametrize("height", [0.5, 2, 6, 8])
 def test_the_grass_reaches_up_to_the_horizon_however_high_the_eye(height):
     picture = MODELS["eye"].drawing(height=height).picture.astype(int)
-    a, b, c = np.linalg.inv(course.camera().A).T @ rotation_from_angles(0.06, 0.05, 0.14)[:, 1]
+    A, R = eye_of(3.4, 7.8)
+    a, b, c = np.linalg.inv(A).T @ R[:, 1]
     for u in (20, 60, 540, 630):
         column, row = (np.array([u, -(a * u + c) / b]) + 0.5) * WIDTH / 640 + [MARGIN, TITLE]
         _, green, blue = picture[TITLE:, round(column)].T
@@ -3432,17 +3407,18 @@ def test_the_ray_is_parallel_to_the_rods_and_pierces_the_glass_where_their_pictu
 
 @pytest.mark.parametrize(("tilt", "roll"), [(3.4, 7.8), (10, -25), (0.5, 20)])
 def test_a_horizon_is_pulled_to_where_a_camera_so_tilted_and_rolled_sees_it(tilt, roll, lines):
-    drawing = MODELS["roll"].drawing(tilt=tilt, roll=roll)
+    drawing = MODELS["eye"].drawing(tilt=tilt, roll=roll)
     near = np.array(grip_of(drawing, "horizon").at)
-    t, turn = np.radians([tilt, roll])
-    R = rotation_from_angles(0, 0, turn) @ rotation_from_angles(t, 0, 0)
-    camera = Camera(intrinsics(800, 800, 325, 238), pose(R, [0, 0, 0]))
+    A, R = eye_of(tilt, roll)
+    camera = Camera(A, pose(R, [0, 0, 0]))
     ends = camera.vanishing_point(np.array([[0.3, 0, 1.0], [-0.2, 0, 1]]))
     skyline = next(xy for _, xy, ink, _ in lines if ink == IDEAL)
     for at in (near, *skyline):
         assert abs(np.linalg.det([*(at - ends[:1]), ends[1] - ends[0]])) < 0.5
-    assert np.linalg.norm(near - [325, 238]) == pytest.approx(800 * np.tan(t), rel=1e-4)
-    pulled = MODELS["roll"].dragged("horizon", tuple(near))
+    assert np.linalg.norm(near - [325, 238]) == pytest.approx(
+        800 * np.tan(np.radians(tilt)), rel=1e-4
+    )
+    pulled = MODELS["eye"].dragged("horizon", tuple(near))
     assert [pulled["tilt"], pulled["roll"]] == [tilt, roll]
 
 
@@ -3886,7 +3862,6 @@ FREE_TO_MOVE = {
     "meet": {"b2": 0.4},
     "finding": {"step": 1.5},
     "triangle": {"Z_u": 900, "turn": 40},
-    "pairs": {"x": 1, "w": 0.5},
     "tilt": {"tilt": 30},
     "stands": {"alpha": 800},
     "straighten": {"k1": -0.1},
@@ -3905,7 +3880,7 @@ FREE_TO_MOVE = {
     ("swing", "row 5"): {"row": 5},
     "similar": {"f": 7},
     "clicks": {"noise": 0.4},
-    "roll": {"tilt": 9, "roll": 0},
+    "eye": {"tilt": 9, "roll": 0},
     "thirteen": {"pair": 5},
     "stop": {"stop": 0},
     "imitation": {"turn": -60},
@@ -3923,7 +3898,6 @@ ON_A_WAY = {  # along a curve, by its x
     ("ruler", "foot"),
     ("rail", "rail"),
     ("glass", "ball"),
-    ("pairs", "number"),
     ("ransac", "draw"),
     ("rings", "place"),
     ("clouds", "window"),
@@ -3964,7 +3938,6 @@ ON_A_CURVE = {  # its nearest place
     ("twins", "other"),
     ("twins", "box"),
     ("plane", "depth"),
-    ("pairs", "pair"),
     ("frame", "corner"),
     ("cube", "camera"),
     ("cube", "pane"),
@@ -4917,6 +4890,7 @@ def test_what_is_folded_can_be_pulled_from_where_it_stands_and_switches_stay(nam
 
 # Where six and more sliders stood under a picture that says them all, and some with fewer.
 FOLDED = {
+    "eye",
     "bowl",
     "cube",
     "entries",
