@@ -31,7 +31,6 @@ from public_face import (
 from cvnotes.calibration import calibrate, coverage
 from cvnotes.show.figures import (
     calibration,
-    estimates,
     lines,
 )
 from cvnotes.show.figures import (
@@ -72,11 +71,6 @@ def figure(call, arrays, name=None, **more):
 
 
 FIGURES = [
-    figure(
-        estimates.draw_plane_error,
-        {"m": (M, several(2)), "predicted": (M + 1, several(2)), "magnify": (10.0, ONE)},
-        paired=("m", "predicted"),
-    ),
     # calibration
     figure(calibration.draw_arrow, {"J": (np.eye(14), SINGLE)}, shared=2),
     figure(

@@ -1,4 +1,6 @@
-"""The sheet of the eight projects: a small drawing for each."""
+"""The sheets of the further exercises and of the projects: a small drawing for each."""
+
+from collections.abc import Callable, Sequence
 
 import numpy as np
 import numpy.typing as npt
@@ -9,15 +11,11 @@ from cvnotes.show.picture import NARROW, Picture
 from cvnotes.show.style import CAMERA, ESTIMATED, FAINT, LENS, MUTED, WORLD
 from cvnotes.show.typeface import svg
 
-_WIDE, _TALL, _GAP, _ABOVE = 200, 140, 14, 26
-_STYLE = ".s{font:600 15px cvnotes;fill:#333}"
+_WIDE, _TALL, _GAP, _ABOVE, _LINE = 200, 140, 14, 26, 22
+_PAGE = 856  # px: as wide are four tiles
 _EYE = Camera(
     intrinsics(158, 158, 96, 58), look_at([3.4, -6.0, -5.6], [0.1, 0, -0.5], up=(0, 0, -1))
 )
-_NAMES = (
-    "1 ★ A poster", "2 ★★ A building", "3 ★★ A cube", "4 ★★ Zoom",
-    "5 ★★ How many pictures?", "6 ★★★ Your board", "7 ★★★ A very wide lens", "8 ★★★ Stereo",
-)  # fmt: skip
 
 
 def eight_projects() -> Picture:
@@ -30,30 +28,67 @@ def eight_projects() -> Picture:
     a frame within a frame; a falling curve; a board with two shifted columns; a bent net; a cube
     in red and in cyan
     """
-    drawn = (
-        _poster(), _building(), _cube(), _zoom(), _curve(), _columns(), _very_wide(), _pair(),
+    tiles = (
+        ("1 ★ A poster", _poster()), ("2 ★★ A building", _building()), ("3 ★★ A cube", _cube()),
+        ("4 ★★ Zoom", _zoom()), ("5 ★★ How many pictures?", _curve()),
+        ("6 ★★★ Your board", _columns()), ("7 ★★★ A very wide lens", _very_wide()),
+        ("8 ★★★ Stereo", _pair()),
     )  # fmt: skip
-
-    def sheet(columns: int, scale: float) -> bytes:
-        pitch, row = _WIDE + _GAP, _ABOVE + _TALL + _GAP
-        width, height = columns * pitch - _GAP + 4, len(drawn) // columns * row
-        tiles = [
-            f'<g transform="translate({k % columns * pitch + 2} {k // columns * row + _ABOVE})">'
-            f'<text class="s" x="2" y="-8">{_NAMES[k]}</text>'
-            f'<clipPath id="tile{k}"><rect width="{_WIDE}" height="{_TALL}" rx="6"/></clipPath>'
-            f'<g clip-path="url(#tile{k})" fill="none" stroke-linejoin="round">{each}</g>'
-            f'<rect width="{_WIDE}" height="{_TALL}" rx="6" fill="none" stroke="{FAINT}"/></g>'
-            for k, each in enumerate(drawn)
-        ]
-        return svg("".join(tiles), width, height, style=_STYLE, scale=scale)
-
     alt = (
         "Eight drawings: a poster straightened; a house with three edges drawn on; a cube on a "
         "board; a frame within a frame; a falling curve; a board with two shifted columns; a bent "
         "net; a cube in red and in cyan"
     )
-    wide = 4 * (_WIDE + _GAP) - _GAP + 4
-    return Picture(sheet(4, 1), alt, wide, "image/svg+xml", sheet(2, NARROW / 418))
+    return _sheet(tiles, 4, alt, 15)
+
+
+def exercise_map() -> Picture:
+    """Draw a card for each section of the further exercises, with the tasks that stand in it.
+
+    Examples
+    --------
+    >>> str(exercise_map())[:70]
+    'Ten cards. Projective space: 1 ★, A ★★, B ★★★. The camera model: 2 ★. '
+    """
+    tiles = (
+        ("Projective space", _rails(), "1 ★", "A ★★  B ★★★"),
+        ("The camera model", _wedge(), "2 ★"),
+        ("Lens distortion", _bent(), "3 ★★", "C ★★"),
+        ("Homographies", _missed(), "4 ★", "D ★★★"),
+        ("Zhang’s calibration", _boards(), "5 ★★  6 ★★  7 ★★", "E ★★★  F ★★★"),
+        ("Without a board", _turned(), "8 ★★★"),
+        ("Many views", _arrow(), "9 ★★★"),
+        ("Image warping", _pixels(), "10 ★★"),
+        ("Your own camera", _telephone(), "11 ★★  12 ★★★", "G ★★★"),
+        ("Two pictures", _diamond(), "13 ★★"),
+    )
+    named = (f"{name}: {', '.join('  '.join(tasks).split('  '))}." for name, _, *tasks in tiles)
+    return _sheet(tiles, 5, f"Ten cards. {' '.join(named)}", 18)
+
+
+def _sheet(tiles: Sequence[tuple[str, ...]], columns: int, alt: str, size: int) -> Picture:
+    """Draw tiles: over each its name, under it up to two lines; two in a row on a telephone."""
+    below = _LINE * (max(map(len, tiles)) - 2)
+
+    def sheet(columns: int, page: float) -> bytes:
+        pitch, row = _WIDE + _GAP, _ABOVE + _TALL + below + _GAP
+        width, height = columns * pitch - _GAP + 4, len(tiles) // columns * row
+        drawn = ""
+        for k, (name, drawing, *under) in enumerate(tiles):
+            left, top = k % columns * pitch + 2, k // columns * row + _ABOVE
+            words = (f'<text x="2" y="{_TALL + _LINE * (i + 1)}">{words}</text>'
+                     for i, words in enumerate(under))  # fmt: skip
+            drawn += (
+                f'<g transform="translate({left} {top})"><text class="s" x="2" y="-8">{name}</text>'
+                f'<clipPath id="tile{k}"><rect width="{_WIDE}" height="{_TALL}" rx="6"/></clipPath>'
+                f'<g clip-path="url(#tile{k})" fill="none" stroke-linejoin="round">{drawing}</g>'
+                f'<rect width="{_WIDE}" height="{_TALL}" rx="6" fill="none" stroke="{FAINT}"/>'
+                f"{''.join(words)}</g>"
+            )
+        style = f"text{{font:{size}px cvnotes;fill:#333;white-space:pre}}.s{{font-weight:600}}"
+        return svg(drawn, width, height, style=style, scale=page / width)
+
+    return Picture(sheet(columns, _PAGE), alt, _PAGE, "image/svg+xml", sheet(2, NARROW))
 
 
 def _line(points: npt.ArrayLike, stroke: str, width: float = 2, more: str = "") -> str:
@@ -93,22 +128,32 @@ def _board(columns: int = 6, rows: int = 5) -> str:
     return _face(_seen(sheet), "#fff", MUTED) + "".join(squares)
 
 
+def _dot(x: float, y: float, ink: str, radius: float = 4.5) -> str:
+    return f'<circle cx="{x:.1f}" cy="{y:.1f}" r="{radius}" fill="{ink}"/>'
+
+
+def _upright(corners: npt.ArrayLike) -> Callable[[float, float, float, float, str], str]:
+    """Return what draws a part of a wall; of its two upright sides the longer one is nearer."""
+    a, b, c, d = np.asarray(corners, float)
+    left, right = np.hypot(*(d - a)), np.hypot(*(c - b))
+
+    def at(x: float, y: float) -> Array:
+        s = x * left / (x * left + (1 - x) * right)  # the half that is nearer is the wider
+        return np.asarray((1 - y) * ((1 - s) * a + s * b) + y * ((1 - s) * d + s * c))
+
+    def part(x0: float, y0: float, x1: float, y1: float, ink: str) -> str:
+        return _face([at(x0, y0), at(x1, y0), at(x1, y1), at(x0, y1)], ink)
+
+    return part
+
+
 def _poster() -> str:
     """Draw a poster seen from the side, and beside it straight on."""
 
     def poster(corners: npt.ArrayLike) -> str:
-        a, b, c, d = np.asarray(corners, float)
-
-        def at(x: float, y: float) -> Array:
-            w = np.array([1, np.hypot(*(d - a)) / np.hypot(*(c - b))])  # nearer is larger
-            s = x * w[0] / (x * w[0] + (1 - x) * w[1])
-            return np.asarray((1 - y) * ((1 - s) * a + s * b) + y * ((1 - s) * d + s * c))
-
-        def part(x0: float, y0: float, x1: float, y1: float, ink: str) -> str:
-            return _face([at(x0, y0), at(x1, y0), at(x1, y1), at(x0, y1)], ink)
-
+        part = _upright(corners)
         lines = (part(0.14, y, x, y + 0.04, MUTED) for y, x in ((0.7, 0.86), (0.8, 0.7)))
-        return (_face([a, b, c, d], "#fff", "#333", 2) + part(0.14, 0.1, 0.86, 0.58, CAMERA)
+        return (_face(corners, "#fff", "#333", 2) + part(0.14, 0.1, 0.86, 0.58, CAMERA)
                 + part(0.26, 0.22, 0.5, 0.58, LENS) + "".join(lines))  # fmt: skip
 
     arrow = _line([[97, 70], [117, 70]], ESTIMATED, 3) + _line([[110, 63], [117, 70], [110, 77]],
@@ -119,28 +164,19 @@ def _poster() -> str:
 
 def _building() -> str:
     """Draw a house, and its three directions."""
-    near = [[92, 22], [92, 122]]
-    left, right = [[18, 52], [18, 112]], [[184, 44], [184, 114]]
+    near, left, right = ([92, 22], [92, 122]), ([18, 52], [18, 112]), ([184, 44], [184, 114])
 
-    def wall(a: npt.ArrayLike, b: npt.ArrayLike, ink: str, columns: int) -> str:
-        (a0, a1), (b0, b1) = np.array(a, float), np.array(b, float)
-
-        def at(x: float, y: float) -> Array:
-            near, far = np.hypot(*(a1 - a0)), np.hypot(*(b1 - b0))
-            s = x * far / (x * far + (1 - x) * near)
-            s = x * near / (x * near + (1 - x) * far) if far > near else s
-            return np.asarray((1 - y) * ((1 - s) * a0 + s * b0) + y * ((1 - s) * a1 + s * b1))
-
-        holes = [
-            _face([at(x, y), at(x + w, y), at(x + w, y + 0.17), at(x, y + 0.17)], "#fff")
-            for w in [0.5 / columns]
+    def wall(far: tuple[list[int], list[int]], ink: str, columns: int) -> str:
+        part = _upright([near[0], far[0], far[1], near[1]])
+        holes = (
+            part(x, y, x + 0.5 / columns, y + 0.17, "#fff")
             for x in (np.arange(columns) + 0.25) / columns
             for y in (0.14, 0.42, 0.7)
-        ]
-        return _face([a0, b0, b1, a1], ink) + "".join(holes)
+        )
+        return part(0, 0, 1, 1, ink) + "".join(holes)
 
-    ways = (near, [near[0], left[0]], [near[0], right[0]])
-    return (wall(near, left, "#B9C4CC", 3) + wall(near, right, "#D9E0E5", 4)
+    ways = (near, (near[0], left[0]), (near[0], right[0]))
+    return (wall(left, "#B9C4CC", 3) + wall(right, "#D9E0E5", 4)
             + "".join(_line(way, ESTIMATED, 4) for way in ways))  # fmt: skip
 
 
@@ -172,7 +208,7 @@ def _curve() -> str:
     for count in (3, 10, 20, 38):
         x, y, half = 24 + 4.2 * count, 120 - 92 / np.sqrt(count), 26 / np.sqrt(count)
         bars += _line([[x, y - half], [x, y + half]], ESTIMATED, 2.5)
-        bars += f'<circle cx="{x:.1f}" cy="{y:.1f}" r="4.5" fill="{ESTIMATED}"/>'
+        bars += _dot(x, y, ESTIMATED)
     return axes + _line(curve, LENS, 3) + bars
 
 
@@ -188,22 +224,24 @@ def _columns() -> str:
         shift, ink = {2: (7, ESTIMATED), 5: (-6, ESTIMATED)}.get(i, (0, LENS))
         x = 40 + 20 * i + shift
         shown += _line([[x, 26], [x, 114]], ink, 3 if shift else 1.5)
-        shown += "".join(f'<circle cx="{x}" cy="{y}" r="3.5" fill="{ink}"/>' for y in rows)
+        shown += "".join(_dot(x, y, ink, 3.5) for y in rows)
     return dark + shown
 
 
-def _very_wide() -> str:
-    """Draw a net of straight lines ahead, as a lens sees it whose picture is a disc."""
-    lines = []
-    t = np.linspace(-6, 6, 61)
+def _net(bend: Callable[[Array], Array], width: float, ink: str = LENS) -> str:
+    """Draw a net of straight lines ahead, whose points go to another distance from the middle."""
+    lines, t = "", np.linspace(-6, 6, 61)
     for c in (-3, -1.2, -0.4, 0.4, 1.2, 3):
         for x, y in ((np.full_like(t, c), t), (t, np.full_like(t, c))):
             r = np.hypot(x, y)
-            far = 40 * np.arctan(r) / np.maximum(r, 1e-9)
-            lines.append(np.column_stack([100 + far * x, 70 + far * y]))
-    net = "".join(_line(line, LENS, 1.6) for line in lines)
-    return (f'<rect width="{_WIDE}" height="{_TALL}" fill="#222"/>'
-            f'<circle cx="100" cy="70" r="64" fill="#F4F8FB"/>{net}')  # fmt: skip
+            lines += _line((bend(r) / r * [x, y]).T + [100, 70], ink, width)
+    return lines
+
+
+def _very_wide() -> str:
+    """Draw the net as a lens sees it whose picture is a disc."""
+    return (f'<rect width="{_WIDE}" height="{_TALL}" fill="#222"/>{_dot(100, 70, "#F4F8FB", 64)}'
+            + _net(lambda r: 40 * np.arctan(r), 1.6))  # fmt: skip
 
 
 def _pair() -> str:
@@ -216,3 +254,102 @@ def _pair() -> str:
         near = "".join(_line(_seen(edge) + [shift + 3, 22], ink, 2.5) for edge in edges)
         drawn += f'<g style="mix-blend-mode:multiply">{near}</g>'
     return drawn
+
+
+def _rails() -> str:
+    """Draw two rails, and the line through two points of one."""
+    sleepers = "".join(
+        _line([[154 - 0.9 * v, v], [46 + 0.9 * v, v]], "#8A6A52", (v - 56) / 9)
+        for v in (64, 70, 80, 95, 118)
+    )
+    return (_face([[0, 60], [200, 60], [200, 140], [0, 140]], "#DCE8D6") + sleepers
+            + _line([[40, 140], [100, 60], [160, 140]], MUTED, 4)
+            + _line([[40, 140], [145, 0]], ESTIMATED, 3) + _dot(55, 120, ESTIMATED, 6)
+            + _dot(85, 80, ESTIMATED, 6))  # fmt: skip
+
+
+def _wedge() -> str:
+    """Draw from above what a camera sees, and its angle."""
+    things = "".join(
+        f'<rect x="{x}" y="{y}" width="18" height="18" fill="{ink}"/>'
+        for x, y, ink in ((72, 26, WORLD), (112, 44, WORLD), (18, 60, FAINT), (168, 36, FAINT))
+    )
+    arc = f'<path d="M77 82A50 50 0 0 1 123 82" stroke="{ESTIMATED}" stroke-width="5"/>'
+    return (_face([[100, 126], [34, 0], [166, 0]], "#DCEDF8") + things
+            + _line([[34, 0], [100, 126], [166, 0]], CAMERA, 3) + arc)  # fmt: skip
+
+
+def _bent() -> str:
+    """Draw a net bent by a lens over the straight one."""
+    return _net(lambda r: 30 * r, 1, MUTED) + _net(lambda r: 91 * np.arctan(0.33 * r), 2.5)
+
+
+def _missed() -> str:
+    """Draw a board, and by how much its corners are missed."""
+    part = _upright([[10, 4], [190, 28], [190, 114], [10, 138]])
+    drawn = "".join(part(i / 4, j / 3, (i + 1) / 4, (j + 1) / 3, "#D4D4D4")
+                    for i in range(4) for j in range(3) if (i + j) % 2 == 0)  # fmt: skip
+    for x, y, far in ((72, 51, 15), (120, 54, 24), (158, 55, 9),
+                      (72, 91, 24), (120, 88, 10), (158, 87, 19)):  # fmt: skip
+        way = far * np.array([np.cos(x + y), np.sin(x + y)])
+        drawn += f'<circle cx="{x}" cy="{y}" r="{far}" stroke="{LENS}" stroke-width="2"/>'
+        drawn += _line([[x, y], way + [x, y]], ESTIMATED, 3) + _dot(x, y, LENS, 4)
+    return drawn
+
+
+def _boards() -> str:
+    """Draw three boards around a camera."""
+    drawn = ""
+    for x, width, top, bottom in (
+        (14, 38, (20, 34), (84, 76)), (74, 52, (16, 16), (52, 52)), (148, 38, (36, 20), (76, 86)),
+    ):  # fmt: skip
+        corners = [[x, top[0]], [x + width, top[1]], [x + width, bottom[1]], [x, bottom[0]]]
+        part = _upright(corners)
+        dark = (part(i / 4, j / 4, i / 4 + 0.25, j / 4 + 0.25, WORLD)
+                for i in range(4) for j in range(4) if (i + j) % 2 == 0)  # fmt: skip
+        drawn += _line([np.mean(corners, axis=0), [100, 122]], FAINT, 1.5)
+        drawn += _face(corners, "#fff", WORLD, 1.5) + "".join(dark)
+    return drawn + _face([[100, 122], [80, 98], [120, 98]], "#DCEDF8", CAMERA, 3)
+
+
+def _turned() -> str:
+    """Draw two pictures of a tree, taken by a turn on the spot."""
+    return (_face([[20, 34], [124, 34], [124, 112], [20, 112]], "#E7F0F7", LENS, 3)
+            + _face([[78, 34], [182, 12], [182, 130], [78, 112]], "#F6D9C055", ESTIMATED, 3)
+            + _line([[101, 102], [101, 74]], "#7A5230", 5) + _dot(101, 64, WORLD, 16))  # fmt: skip
+
+
+def _arrow() -> str:
+    """Draw the arrow of many views: blocks on a diagonal, and what all share."""
+    blocks = "".join(f'<rect x="{42 + 14 * i}" y="{12 + 14 * i}" width="13" height="13"/>'
+                     for i in range(9))  # fmt: skip
+    shared = '<path d="M42 12V137H55V12Z"/><path d="M42 12H167V25H42Z"/>'
+    return f'<g fill="{CAMERA}">{shared}</g><g fill="{LENS}">{blocks}</g>'
+
+
+def _pixels() -> str:
+    """Draw pixels, and a place between four of them."""
+    levels = (68, 102, 187, 238, 102, 153, 221, 255, 170, 204, 238, 255)
+    each = (f'<rect x="{50 * (i % 4)}" y="{47 * (i // 4)}" width="50" height="47" '
+            f'fill="rgb({grey},{grey},{grey})"/>' for i, grey in enumerate(levels))  # fmt: skip
+    ways = (_line([[x, y], [112, 40]], ESTIMATED, 2) + _dot(x, y, ESTIMATED, 3)
+            for x in (75, 125) for y in (23, 70))  # fmt: skip
+    return "".join((*each, *ways)) + _dot(112, 40, ESTIMATED, 7)
+
+
+def _telephone() -> str:
+    """Draw a telephone that photographs a board, and a number with its standard deviation."""
+    dark = "".join(f'<rect x="{50 + 14 * i}" y="{36 + 14 * j}" width="14" height="14" fill="#444"/>'
+                   for i in range(5) for j in range(4) if (i + j) % 2 == 0)  # fmt: skip
+    bar = f'<path d="M164 30V98M156 30h16m-16 68h16" stroke="{ESTIMATED}" stroke-width="4"/>'
+    return ('<rect x="24" y="18" width="122" height="92" rx="12" fill="#333"/>'
+            f'<rect x="38" y="26" width="94" height="76" fill="#fff"/>{dark}{bar}'
+            + _dot(164, 64, ESTIMATED, 7))  # fmt: skip
+
+
+def _diamond() -> str:
+    """Draw from above two cameras that see one point, each through a pixel."""
+    wedges = '<path d="M60 126L106 8H136ZM140 126L94 8H64Z" fill="#56B4E9" fill-opacity="0.35"/>'
+    cameras = f'<path d="M60 128l-11-18h22zM140 128l-11-18h22z" fill="#fff" stroke="{CAMERA}" '
+    where = _face([[100, 23], [109.8, 49], [100, 64], [90.2, 49]], ESTIMATED)
+    return f'{wedges}{where}{cameras}stroke-width="3"/>'
