@@ -72,7 +72,6 @@ def figure(call, arrays, name=None, **more):
 
 FIGURES = [
     # calibration
-    figure(calibration.draw_arrow, {"J": (np.eye(14), SINGLE)}, shared=2),
     figure(
         calibration.draw_cube,
         {"side": (20.0, ONE), "origin": (np.array([5.0, 5]), several(2))},

@@ -622,7 +622,7 @@ def test_partners_stand_where_both_turned_cameras_see_them_and_at_the_end_in_one
 
 
 def test_a_turned_camera_shows_what_it_would_see_and_grey_where_nothing_was_taken():
-    picture = MODELS["rectification"].picture(turned=100).astype(int)
+    picture = MODELS["rectification"].picture(turned=100, slid=0).astype(int)
     for k, camera in enumerate(turned(1)):
         photo = render_scene(room(), camera)
         seen = np.asarray(Image.fromarray(photo).resize((400, 300))).astype(int)
@@ -634,7 +634,7 @@ def test_a_turned_camera_shows_what_it_would_see_and_grey_where_nothing_was_take
         assert (off[~grey] < 30).mean() > 0.88  # but for the lines, the mark and the names
 
 
-@pytest.mark.parametrize("values", [{}, {"turned": 50}, {"turned": 100}])
+@pytest.mark.parametrize("values", [{"slid": 0}, {"turned": 50}, {"turned": 100, "slid": 60}])
 def test_epipolar_lines_cross_both_pictures_from_border_to_border(values):
     picture = MODELS["rectification"].picture(**values).astype(int)[TITLE : TITLE + 300]
     orange = np.abs(picture - colour(ESTIMATED)).max(axis=2) < 60
@@ -3970,6 +3970,7 @@ ON_A_WAY = {  # along a curve, by its x
     ("parabola", "t"),
     ("poster", "width"),
     ("thirteen", "number"),
+    ("rectification", "seam"),
 }
 ROUND = {
     ("rim", "ring"),

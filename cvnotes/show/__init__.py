@@ -3,7 +3,7 @@
 from cvnotes.show.axes import panels
 from cvnotes.show.banner import one_corner
 from cvnotes.show.explorations import explore, pull_points
-from cvnotes.show.figures.calibration import draw_arrow, draw_cube
+from cvnotes.show.figures.calibration import draw_cube
 from cvnotes.show.figures.ideas import draw_meanings
 from cvnotes.show.figures.images import draw_corners, draw_image, draw_points
 from cvnotes.show.figures.lines import draw_lines, draw_segments
@@ -41,9 +41,8 @@ __all__ = [
     "draw_segments",
     # the colours
     "draw_meanings",
-    # chapter 7: its strip, the picture of J, a cube on the board
+    # chapter 7: its strip, a cube on the board
     "chain",
-    "draw_arrow",
     "draw_cube",
     # the further exercises
     "eight_projects",

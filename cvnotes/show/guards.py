@@ -39,17 +39,6 @@ def length(x: Any, name: str) -> float:
     return value
 
 
-def count(x: Any, name: str) -> int:
-    """Guard how many lines or columns are drawn: a whole number from 1 to 1000.
-
-    Examples
-    --------
-    >>> count(9, "lines")
-    9
-    """
-    return whole(x, name, at_most=_MOST)
-
-
 def thing(x: Any, name: str, kind: type[Kind]) -> Kind:
     """Guard what is no array: a camera, a lens, a board.
 

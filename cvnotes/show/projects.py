@@ -29,7 +29,7 @@ def eight_projects() -> Picture:
     in red and in cyan
     """
     tiles = (
-        ("1 ★ A poster", _poster()), ("2 ★★ A building", _building()), ("3 ★★ A cube", _cube()),
+        ("1 ★ A poster", _poster()), ("2 ★★ A building", _building()), ("3 ★★ A cube", _board() + _block(-1, -0.5, 2, 2, ("#F9C48A", "#F08A24", "#C96A0E"))),
         ("4 ★★ Zoom", _zoom()), ("5 ★★ How many pictures?", _curve()),
         ("6 ★★★ Your board", _columns()), ("7 ★★★ A very wide lens", _very_wide()),
         ("8 ★★★ Stereo", _pair()),
@@ -91,9 +91,9 @@ def _sheet(tiles: Sequence[tuple[str, ...]], columns: int, alt: str, size: int) 
     return Picture(sheet(columns, _PAGE), alt, _PAGE, "image/svg+xml", sheet(2, NARROW))
 
 
-def _line(points: npt.ArrayLike, stroke: str, width: float = 2, more: str = "") -> str:
+def _line(points: npt.ArrayLike, stroke: str, width: float = 2) -> str:
     d = "M" + "L".join(f"{x:.1f} {y:.1f}" for x, y in np.asarray(points, float))
-    return f'<path d="{d}" stroke="{stroke}" stroke-width="{width}" {more}/>'
+    return f'<path d="{d}" stroke="{stroke}" stroke-width="{width}"/>'
 
 
 def _face(points: npt.ArrayLike, fill: str, stroke: str = "none", width: float = 1) -> str:
@@ -147,6 +147,15 @@ def _upright(corners: npt.ArrayLike) -> Callable[[float, float, float, float, st
     return part
 
 
+def _checks(part: Callable[..., str], columns: int, rows: int, ink: str) -> str:
+    return "".join(part(i / columns, j / rows, (i + 1) / columns, (j + 1) / rows, ink)
+                   for i in range(columns) for j in range(rows) if (i + j) % 2 == 0)  # fmt: skip
+
+
+def _path(d: str, stroke: str, width: float, fill: str = "none") -> str:
+    return f'<path d="{d}" stroke="{stroke}" stroke-width="{width}" fill="{fill}"/>'
+
+
 def _poster() -> str:
     """Draw a poster seen from the side, and beside it straight on."""
 
@@ -156,8 +165,7 @@ def _poster() -> str:
         return (_face(corners, "#fff", "#333", 2) + part(0.14, 0.1, 0.86, 0.58, CAMERA)
                 + part(0.26, 0.22, 0.5, 0.58, LENS) + "".join(lines))  # fmt: skip
 
-    arrow = _line([[97, 70], [117, 70]], ESTIMATED, 3) + _line([[110, 63], [117, 70], [110, 77]],
-                                                              ESTIMATED, 3)  # fmt: skip
+    arrow = _path("M97 70h20m-7 -7l7 7l-7 7", ESTIMATED, 3)
     return (poster([[22, 14], [80, 34], [80, 104], [22, 126]]) + arrow
             + poster([[128, 20], [184, 20], [184, 120], [128, 120]]))  # fmt: skip
 
@@ -180,16 +188,10 @@ def _building() -> str:
             + "".join(_line(way, ESTIMATED, 4) for way in ways))  # fmt: skip
 
 
-def _cube() -> str:
-    """Draw a cube that stands on a board."""
-    return _board() + _block(-1, -0.5, 2, 2, ("#F9C48A", "#F08A24", "#C96A0E"))
-
-
 def _zoom() -> str:
     """Draw a hill with a tree, and the frames of three zooms."""
-    hill = '<path d="M0 112Q60 78 118 98T200 92V140H0Z" fill="#CFE3D6"/>'
-    tree = (f'<path d="M100 96V66" stroke="#7A5230" stroke-width="5"/>'
-            f'<circle cx="100" cy="56" r="15" fill="{WORLD}"/>')  # fmt: skip
+    hill = _path("M0 112Q60 78 118 98T200 92V140H0Z", "none", 0, "#CFE3D6")
+    tree = _path("M100 96V66", "#7A5230", 5) + _dot(100, 56, WORLD, 15)
     shown = "".join(
         f'<rect x="{100 - 92 * part / 0.9:.0f}" y="{70 - 62 * part / 0.9:.0f}" '
         f'width="{184 * part / 0.9:.0f}" height="{124 * part / 0.9:.0f}" '
@@ -214,17 +216,12 @@ def _curve() -> str:
 
 def _columns() -> str:
     """Draw a board, two of whose columns of corners are shifted."""
-    dark = "".join(
-        f'<rect x="{20 + 20 * i}" y="{20 + 20 * j}" width="20" height="20" fill="#D4D4D4"/>'
-        for j in range(5) for i in range(8) if (i + j) % 2 == 0
-    )  # fmt: skip
-    rows = 40 + 20 * np.arange(4)
+    dark = _checks(_upright([[20, 20], [180, 20], [180, 120], [20, 120]]), 8, 5, "#D4D4D4")
     shown = ""
-    for i in range(7):
-        shift, ink = {2: (7, ESTIMATED), 5: (-6, ESTIMATED)}.get(i, (0, LENS))
-        x = 40 + 20 * i + shift
-        shown += _line([[x, 26], [x, 114]], ink, 3 if shift else 1.5)
-        shown += "".join(_dot(x, y, ink, 3.5) for y in rows)
+    for x, ink, wide in ((40, LENS, 1.5), (60, LENS, 1.5), (87, ESTIMATED, 3), (100, LENS, 1.5),
+                         (120, LENS, 1.5), (134, ESTIMATED, 3), (160, LENS, 1.5)):  # fmt: skip
+        dots = "".join(_dot(x, y, ink, 3.5) for y in (40, 60, 80, 100))
+        shown += _path(f"M{x} 26V114", ink, wide) + dots
     return dark + shown
 
 
@@ -258,25 +255,19 @@ def _pair() -> str:
 
 def _rails() -> str:
     """Draw two rails, and the line through two points of one."""
-    sleepers = "".join(
-        _line([[154 - 0.9 * v, v], [46 + 0.9 * v, v]], "#8A6A52", (v - 56) / 9)
-        for v in (64, 70, 80, 95, 118)
-    )
-    return (_face([[0, 60], [200, 60], [200, 140], [0, 140]], "#DCE8D6") + sleepers
-            + _line([[40, 140], [100, 60], [160, 140]], MUTED, 4)
-            + _line([[40, 140], [145, 0]], ESTIMATED, 3) + _dot(55, 120, ESTIMATED, 6)
-            + _dot(85, 80, ESTIMATED, 6))  # fmt: skip
+    sleepers = (_line([[154 - 0.9 * v, v], [46 + 0.9 * v, v]], "#8A6A52", (v - 56) / 9)
+                for v in (64, 70, 80, 95, 118))  # fmt: skip
+    return (_path("M0 60H200V140H0Z", "none", 0, "#DCE8D6") + "".join(sleepers)
+            + _path("M40 140L100 60L160 140", MUTED, 4) + _path("M40 140L145 0", ESTIMATED, 3)
+            + _dot(55, 120, ESTIMATED, 6) + _dot(85, 80, ESTIMATED, 6))  # fmt: skip
 
 
 def _wedge() -> str:
     """Draw from above what a camera sees, and its angle."""
-    things = "".join(
-        f'<rect x="{x}" y="{y}" width="18" height="18" fill="{ink}"/>'
-        for x, y, ink in ((72, 26, WORLD), (112, 44, WORLD), (18, 60, FAINT), (168, 36, FAINT))
-    )
-    arc = f'<path d="M77 82A50 50 0 0 1 123 82" stroke="{ESTIMATED}" stroke-width="5"/>'
-    return (_face([[100, 126], [34, 0], [166, 0]], "#DCEDF8") + things
-            + _line([[34, 0], [100, 126], [166, 0]], CAMERA, 3) + arc)  # fmt: skip
+    return (_path("M34 0L100 126L166 0", CAMERA, 3, "#DCEDF8")
+            + _path("M72 26h18v18h-18zM112 44h18v18h-18z", "none", 0, WORLD)
+            + _path("M18 60h18v18h-18zM168 36h18v18h-18z", "none", 0, FAINT)
+            + _path("M77 82A50 50 0 0 1 123 82", ESTIMATED, 5))  # fmt: skip
 
 
 def _bent() -> str:
@@ -286,9 +277,7 @@ def _bent() -> str:
 
 def _missed() -> str:
     """Draw a board, and by how much its corners are missed."""
-    part = _upright([[10, 4], [190, 28], [190, 114], [10, 138]])
-    drawn = "".join(part(i / 4, j / 3, (i + 1) / 4, (j + 1) / 3, "#D4D4D4")
-                    for i in range(4) for j in range(3) if (i + j) % 2 == 0)  # fmt: skip
+    drawn = _checks(_upright([[10, 4], [190, 28], [190, 114], [10, 138]]), 4, 3, "#D4D4D4")
     for x, y, far in ((72, 51, 15), (120, 54, 24), (158, 55, 9),
                       (72, 91, 24), (120, 88, 10), (158, 87, 19)):  # fmt: skip
         way = far * np.array([np.cos(x + y), np.sin(x + y)])
@@ -299,57 +288,48 @@ def _missed() -> str:
 
 def _boards() -> str:
     """Draw three boards around a camera."""
-    drawn = ""
-    for x, width, top, bottom in (
-        (14, 38, (20, 34), (84, 76)), (74, 52, (16, 16), (52, 52)), (148, 38, (36, 20), (76, 86)),
-    ):  # fmt: skip
-        corners = [[x, top[0]], [x + width, top[1]], [x + width, bottom[1]], [x, bottom[0]]]
-        part = _upright(corners)
-        dark = (part(i / 4, j / 4, i / 4 + 0.25, j / 4 + 0.25, WORLD)
-                for i in range(4) for j in range(4) if (i + j) % 2 == 0)  # fmt: skip
-        drawn += _line([np.mean(corners, axis=0), [100, 122]], FAINT, 1.5)
-        drawn += _face(corners, "#fff", WORLD, 1.5) + "".join(dark)
-    return drawn + _face([[100, 122], [80, 98], [120, 98]], "#DCEDF8", CAMERA, 3)
+    drawn = _path("M33 54L100 122V34M167 54L100 122", FAINT, 1.5)
+    for x, end, high, low in ((14, 52, (20, 34), (84, 76)), (74, 126, (16, 16), (52, 52)),
+                              (148, 186, (36, 20), (76, 86))):  # fmt: skip
+        corners = [[x, high[0]], [end, high[1]], [end, low[1]], [x, low[0]]]
+        drawn += _face(corners, "#fff", WORLD, 1.5) + _checks(_upright(corners), 4, 4, WORLD)
+    return drawn + _path("M100 122L80 98H120Z", CAMERA, 3, "#DCEDF8")
 
 
 def _turned() -> str:
     """Draw two pictures of a tree, taken by a turn on the spot."""
-    return (_face([[20, 34], [124, 34], [124, 112], [20, 112]], "#E7F0F7", LENS, 3)
-            + _face([[78, 34], [182, 12], [182, 130], [78, 112]], "#F6D9C055", ESTIMATED, 3)
-            + _line([[101, 102], [101, 74]], "#7A5230", 5) + _dot(101, 64, WORLD, 16))  # fmt: skip
+    return (_path("M20 34H124V112H20Z", LENS, 3, "#E7F0F7")
+            + _path("M78 34L182 12V130L78 112Z", ESTIMATED, 3, "#F6D9C055")
+            + _path("M101 102V74", "#7A5230", 5) + _dot(101, 64, WORLD, 16))  # fmt: skip
 
 
 def _arrow() -> str:
     """Draw the arrow of many views: blocks on a diagonal, and what all share."""
-    blocks = "".join(f'<rect x="{42 + 14 * i}" y="{12 + 14 * i}" width="13" height="13"/>'
-                     for i in range(9))  # fmt: skip
-    shared = '<path d="M42 12V137H55V12Z"/><path d="M42 12H167V25H42Z"/>'
-    return f'<g fill="{CAMERA}">{shared}</g><g fill="{LENS}">{blocks}</g>'
+    blocks = "".join(f"M{42 + 14 * i} {12 + 14 * i}h13v13h-13z" for i in range(9))
+    shared = _path("M42 12H167V25H55V137H42Z", "none", 0, CAMERA)
+    return shared + _path(blocks, "none", 0, LENS)
 
 
 def _pixels() -> str:
     """Draw pixels, and a place between four of them."""
     levels = (68, 102, 187, 238, 102, 153, 221, 255, 170, 204, 238, 255)
-    each = (f'<rect x="{50 * (i % 4)}" y="{47 * (i // 4)}" width="50" height="47" '
-            f'fill="rgb({grey},{grey},{grey})"/>' for i, grey in enumerate(levels))  # fmt: skip
-    ways = (_line([[x, y], [112, 40]], ESTIMATED, 2) + _dot(x, y, ESTIMATED, 3)
-            for x in (75, 125) for y in (23, 70))  # fmt: skip
-    return "".join((*each, *ways)) + _dot(112, 40, ESTIMATED, 7)
+    each = (_path(f"M{50 * (i % 4)} {47 * (i // 4)}h50v47h-50z", "none", 0, f"rgb({n},{n},{n})")
+            for i, n in enumerate(levels))  # fmt: skip
+    ways = _path("M75 23L112 40L125 23M75 70L112 40L125 70", ESTIMATED, 2)
+    return "".join(each) + ways + _dot(112, 40, ESTIMATED, 7)
 
 
 def _telephone() -> str:
     """Draw a telephone that photographs a board, and a number with its standard deviation."""
-    dark = "".join(f'<rect x="{50 + 14 * i}" y="{36 + 14 * j}" width="14" height="14" fill="#444"/>'
-                   for i in range(5) for j in range(4) if (i + j) % 2 == 0)  # fmt: skip
-    bar = f'<path d="M164 30V98M156 30h16m-16 68h16" stroke="{ESTIMATED}" stroke-width="4"/>'
+    board = _checks(_upright([[50, 36], [120, 36], [120, 92], [50, 92]]), 5, 4, "#444")
     return ('<rect x="24" y="18" width="122" height="92" rx="12" fill="#333"/>'
-            f'<rect x="38" y="26" width="94" height="76" fill="#fff"/>{dark}{bar}'
+            + _path("M38 26H132V102H38Z", "none", 0, "#fff") + board
+            + _path("M164 30V98M156 30h16m-16 68h16", ESTIMATED, 4)
             + _dot(164, 64, ESTIMATED, 7))  # fmt: skip
 
 
 def _diamond() -> str:
     """Draw from above two cameras that see one point, each through a pixel."""
-    wedges = '<path d="M60 126L106 8H136ZM140 126L94 8H64Z" fill="#56B4E9" fill-opacity="0.35"/>'
-    cameras = f'<path d="M60 128l-11-18h22zM140 128l-11-18h22z" fill="#fff" stroke="{CAMERA}" '
-    where = _face([[100, 23], [109.8, 49], [100, 64], [90.2, 49]], ESTIMATED)
-    return f'{wedges}{where}{cameras}stroke-width="3"/>'
+    return (_path("M60 126L106 8H136ZM140 126L94 8H64Z", "none", 0, "#56B4E955")
+            + _path("M100 23L109.8 49L100 64L90.2 49Z", "none", 0, ESTIMATED)
+            + _path("M60 128l-11-18h22zM140 128l-11-18h22z", CAMERA, 3, "#fff"))  # fmt: skip

@@ -11,7 +11,6 @@ _ALPHA, _BASE = 520.0, 200.0  # px, mm
 _PLANE = 1100.0  # mm, where both pictures are drawn: a pixel is 1100/520 mm there
 _X, _Z = (-400, 620), (5600, -520)  # mm that are shown, from above
 _TIMES, _DEPTHS = 20, (1000, 2000, 4000)  # errors are drawn so many times larger, there
-_SHOWN = (5950, -520)  # mm, where errors are larger
 _LIGHT, _WARM, _GREY = "#D1EDE5", "#F3CDAE", "#E2E2E2"
 
 
@@ -20,7 +19,7 @@ def disparity_model() -> Model:
     settings = (
         Setting("X", "X (mm)", 0, 440, 10, 330, "how far to the right of the left camera"),
         Setting("Z", "Z (mm)", 1500, 4500, 10, 4000, "how far away"),
-        Setting("sigma", "σ of d (px)", 0, 0.3, 0.05, 0.25, "how well the disparity is known"),
+        Setting("sigma", "σ of d (px)", 0.05, 0.3, 0.05, 0.25, "how well the disparity is known"),
     )
     about = (
         "Two cameras from above that see one point, with the triangle over their base line and the "
@@ -90,7 +89,7 @@ def _diamond(X: float, Z: float, sigma: float) -> Array:
 def _diamonds(paper: Paper, Z: float, sigma: float) -> Panel:
     """Draw where points between the cameras may lie, so many times larger, and 1 % of the depth."""
     middle, title = _BASE / 2, f"where it may lie, {_TIMES} times as large; grey: 1 %"
-    panel = paper.panel((340, 390), (-130, 390), _SHOWN, title)
+    panel = paper.panel((340, 390), (-130, 390), (5950, -520), title)
     panel.segments([[[x, 0], [middle, Z]] for x in (0, _BASE)], CAMERA, 1)
     depths = [*((z, MUTED) for z in _DEPTHS if abs(z - Z) > 700), (Z, ESTIMATED)]
     for z, ink in depths:
@@ -112,6 +111,4 @@ def _sentence(left: float, right: float, sigma: float) -> str:
     d = left - right
     near, far = (_ALPHA * _BASE / (d + by) for by in (sigma, -sigma))
     said = f"d = {d:.1f} px, so Z = α b / d = {_ALPHA * _BASE / d:.0f} mm."
-    if not sigma:
-        return said
     return f"{said} Were d wrong by {sigma:g} px, it would be {near:.0f} or {far:.0f} mm."
