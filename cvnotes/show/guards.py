@@ -14,7 +14,6 @@ from cvnotes.base import (
     points,
     real,
     rigid_motion,
-    whole,
 )
 
 Kind = TypeVar("Kind")

@@ -29,7 +29,8 @@ def eight_projects() -> Picture:
     in red and in cyan
     """
     tiles = (
-        ("1 ★ A poster", _poster()), ("2 ★★ A building", _building()), ("3 ★★ A cube", _board() + _block(-1, -0.5, 2, 2, ("#F9C48A", "#F08A24", "#C96A0E"))),
+        ("1 ★ A poster", _poster()), ("2 ★★ A building", _building()),
+        ("3 ★★ A cube", _board() + _block(-1, -0.5, 2, 2, ("#F9C48A", "#F08A24", "#C96A0E"))),
         ("4 ★★ Zoom", _zoom()), ("5 ★★ How many pictures?", _curve()),
         ("6 ★★★ Your board", _columns()), ("7 ★★★ A very wide lens", _very_wide()),
         ("8 ★★★ Stereo", _pair()),
@@ -282,7 +283,7 @@ def _missed() -> str:
                       (72, 91, 24), (120, 88, 10), (158, 87, 19)):  # fmt: skip
         way = far * np.array([np.cos(x + y), np.sin(x + y)])
         drawn += f'<circle cx="{x}" cy="{y}" r="{far}" stroke="{LENS}" stroke-width="2"/>'
-        drawn += _line([[x, y], way + [x, y]], ESTIMATED, 3) + _dot(x, y, LENS, 4)
+        drawn += _path(f"M{x} {y}l{way[0]:.1f} {way[1]:.1f}", ESTIMATED, 3) + _dot(x, y, LENS, 4)
     return drawn
 
 

@@ -102,8 +102,8 @@ def _diamonds(paper: Paper, Z: float, sigma: float) -> Panel:
     for z, ink in depths:
         at = np.array([middle, z])
         pale = ESTIMATED if ink == ESTIMATED else mixed(ESTIMATED, "#FFFFFF", 0.45)
-        panel.polygons([at + _TIMES * (_diamond(*at, sigma) - at)], pale)
-    panel.mark([[0, 0], [_BASE, 0]], "camera", 8)
+        panel.polygons([at + _TIMES * (_diamond(middle, z, sigma) - at)], pale)
+    panel.mark(np.array([[0, 0], [_BASE, 0]]), "camera", 8)
     return panel
 
 

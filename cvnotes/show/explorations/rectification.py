@@ -1,8 +1,10 @@
 """Explore rectification: two cameras turn on the spot until their pictures share their rows."""
 
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from cvnotes.base import Array
 from cvnotes.camera import Camera, pose, rotation_from_vector, vector_from_rotation
@@ -111,7 +113,7 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     return Drawing(paper.join((left, right)), _sentence(now, m))
 
 
-def _seen(old: Camera, new: Camera, photo: Array) -> Drawn:
+def _seen(old: Camera, new: Camera, photo: npt.NDArray[Any]) -> Drawn:
     """Return what a camera shows after its turn of what it took before."""
     H = old.A @ old.R @ new.R.T @ np.linalg.inv(new.A)  # pixel as taken from pixel as turned
     photo = photo.clip(0, 255).astype(np.uint8)
