@@ -622,7 +622,7 @@ def test_partners_stand_where_both_turned_cameras_see_them_and_at_the_end_in_one
 
 
 def test_a_turned_camera_shows_what_it_would_see_and_grey_where_nothing_was_taken():
-    picture = MODELS["rectification"].picture(turned=100).astype(int)
+    picture = MODELS["rectification"].picture(turned=100, slid=0).astype(int)
     for k, camera in enumerate(turned(1)):
         photo = render_scene(room(), camera)
         seen = np.asarray(Image.fromarray(photo).resize((400, 300))).astype(int)
@@ -634,7 +634,7 @@ def test_a_turned_camera_shows_what_it_would_see_and_grey_where_nothing_was_take
         assert (off[~grey] < 30).mean() > 0.88  # but for the lines, the mark and the names
 
 
-@pytest.mark.parametrize("values", [{}, {"turned": 50}, {"turned": 100}])
+@pytest.mark.parametrize("values", [{"slid": 0}, {"turned": 50}, {"turned": 100, "slid": 60}])
 def test_epipolar_lines_cross_both_pictures_from_border_to_border(values):
     picture = MODELS["rectification"].picture(**values).astype(int)[TITLE : TITLE + 300]
     orange = np.abs(picture - colour(ESTIMATED)).max(axis=2) < 60
@@ -3918,6 +3918,7 @@ ON_A_WAY = {  # along a curve, by its x
     ("parabola", "t"),
     ("poster", "width"),
     ("thirteen", "number"),
+    ("rectification", "seam"),
 }
 ROUND = {
     ("rim", "ring"),
@@ -4299,24 +4300,31 @@ def test_a_depth_is_where_the_rays_of_both_columns_meet_and_its_error_grows_with
         assert place == pytest.approx([X, Z])
         assert columns(X, Z) == pytest.approx((left, right))
         assert triangulated(*np.array([[left], [right]]))[0] == pytest.approx([X, Z])
-        said = numbers(MODELS["disparity"].drawing(X=X, Z=Z, sigma=0.5).sentence)
+        said = numbers(MODELS["disparity"].drawing(X=X, Z=Z, sigma=0.25).sentence)
         d = left - right
-        near, far = 520 * 200 / (d + 0.5), 520 * 200 / (d - 0.5)
-        assert said == pytest.approx([d, Z, 0.5, near, far], abs=0.51)
-        assert (far - near) / 2 == pytest.approx(0.5 * Z**2 / (520 * 200), rel=2e-3)
+        near, far = 520 * 200 / (d + 0.25), 520 * 200 / (d - 0.25)
+        assert said == pytest.approx([d, Z, 0.25, near, far], abs=0.51)
+        assert (far - near) / 2 == pytest.approx(0.25 * Z**2 / (520 * 200), rel=2e-3)
 
 
-@pytest.mark.parametrize("sigma", [0, 0.25, 0.5, 1])
-def test_the_curve_of_the_error_of_depth_stays_in_its_panel(sigma, monkeypatch):
-    drawn, draw = [], Panel.line
-    monkeypatch.setattr(Panel, "line", lambda *a, **k: (drawn.append(a[:3]), draw(*a, **k)))
-    MODELS["disparity"].drawing(sigma=sigma)
-    panel, curve, _ = next(each for each in drawn if np.shape(each[1]) == (41, 2))
-    Z, error = np.transpose(curve)
-    assert np.allclose(error, sigma * Z**2 / (520 * 200))
-    assert panel.x[0] < 0 < Z[-1] < panel.x[1]
-    assert panel.y[1] < 0
-    assert panel.y[0] > max(error[-1], 50)  # the line of 1 % ends at 50 mm
+@pytest.mark.parametrize("sigma", [0.05, 0.25, 0.3])
+@pytest.mark.parametrize("Z", [1500, 3000, 4500])
+def test_diamonds_are_as_long_as_the_square_of_their_depth_and_stay_in_their_panel(
+    sigma, Z, monkeypatch
+):
+    drawn, draw = [], Panel.polygons
+    monkeypatch.setattr(Panel, "polygons", lambda *a: (drawn.append(a), draw(*a)))
+    MODELS["disparity"].drawing(Z=Z, sigma=sigma)
+    count = 1 + sum(abs(z - Z) > 700 for z in (1000, 2000, 4000))
+    bars, diamonds = drawn[-2 * count : -count], drawn[-count:]
+    for (panel, (bar,), _), (_, (diamond,), _) in zip(bars, diamonds, strict=True):
+        depth = bar[:, 1].mean()
+        assert np.ptp(bar[:, 1]) == pytest.approx(2 * 20 * 0.01 * depth)
+        assert np.ptp(diamond[:, 1]) == pytest.approx(2 * 20 * sigma * depth**2 / 104_000, rel=2e-3)
+        for corners in (bar, diamond):
+            assert (panel.y[1] < corners[:, 1]).all()
+            assert (corners[:, 1] < panel.y[0]).all()
+    assert depth == Z
 
 
 def test_neighbours_that_are_alike_agree_and_noise_does_not():
