@@ -129,7 +129,7 @@ def laid(page: Drawn, photo: Drawn, H: Array) -> Drawn:
     size = page.shape[1::-1]
     over = backward_warp(glass, homography_map(np.linalg.inv(H)), size=size).astype(float)
     both = (1 - over[..., 3:] / 255) * page + over[..., :3]
-    return both.round().clip(0, 255).astype(np.uint8)
+    return np.asarray(both.round().clip(0, 255).astype(np.uint8))
 
 
 def _lay_sheets(panel: Panel, ends: list[float]) -> None:

@@ -59,10 +59,10 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     for room, lens in ((through, _LENS), (without, Lens())):
         room.image(bent_room(lens, room.x, room.y, _ROOM, paper.sharpness, 1))
     draw_fold(through, _LENS)
-    through.line([[0, 0], [seen, 0]], LENS, 2)
+    through.line([[0.0, 0.0], [seen, 0.0]], LENS, 2)
     through.mark([seen, 0], "lens", 9)
     through.grip("point", "the point that the lens shows", [seen, 0], 1)
-    without.line([[0, 0], [wide, 0]], IDEAL, 1, dash=4)
+    without.line([[0.0, 0.0], [wide, 0.0]], IDEAL, 1, dash=4)
     without.mark([[r, 0] for r in newton if r > 0], "estimated", 7)
     without.mark([ideal, 0], "ideal", 10)
     close = paper.panel(_CLOSE, (0.46, 1.06), (0.66, 0.41), "the steps: pull the height r′")
@@ -81,11 +81,11 @@ def _draw(paper: Paper, values: Values) -> Drawing:
 def _draw_curve(panel: Panel, seen: float, ideal: float) -> None:
     """Draw the curve up to the fold and beyond, and the height that is to be reached."""
     fold = _LENS.max_radius
-    panel.line([[0, 0], [_END, 0]], MUTED, 1)
-    for ends, ink, dash in (((0, fold), LENS, 0), ((fold, _END), ESTIMATED, 5)):
-        r = np.linspace(*ends, 91)
+    panel.line([[0.0, 0.0], [_END, 0.0]], MUTED, 1)
+    for start, end, ink, dash in ((0.0, fold, LENS, 0), (fold, _END, ESTIMATED, 5)):
+        r = np.linspace(start, end, 91)
         panel.line(np.stack([r, seen_radius(_LENS, r)], axis=1), ink, 3, dash)
-    panel.line([[0, seen], [_END, seen]], IDEAL, 1.2)
+    panel.line([[0.0, seen], [_END, seen]], IDEAL, 1.2)
     if panel.x[0] > 0:
         for r, name in ((seen, "r₀"), (ideal, "r")):
             panel.line([[r, 0], [r, _shown(r)]], IDEAL, 1, dash=3)
