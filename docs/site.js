@@ -49,6 +49,18 @@ addEventListener("DOMContentLoaded", () => {
   }
 });
 
+// What a paragraph is for, its first words say: they have a colour (site.css).
+addEventListener("DOMContentLoaded", () => {
+  const kinds = {
+    Careful: "careful", Verify: "verify", Change: "try", Guess: "try",
+    Time: "meta", You: "meta", Notes: "meta", // at the head of a chapter
+  };
+  for (const first of document.querySelectorAll(".bd-article:has(.cell) p > strong:first-child")) {
+    const kind = first.previousSibling ? null : kinds[/^\w+/.exec(first.textContent)?.[0]];
+    if (kind) first.classList.add("aim", kind);
+  }
+});
+
 // What the theme and docutils say of themselves, so that every reader program understands it.
 addEventListener("load", () => {
   for (const button of document.querySelectorAll(".search-button-field")) button.removeAttribute("aria-label");

@@ -31,7 +31,6 @@ from public_face import (
 from cvnotes.calibration import calibrate, coverage
 from cvnotes.show.figures import (
     calibration,
-    estimates,
     lines,
 )
 from cvnotes.show.figures import (
@@ -72,13 +71,7 @@ def figure(call, arrays, name=None, **more):
 
 
 FIGURES = [
-    figure(
-        estimates.draw_plane_error,
-        {"m": (M, several(2)), "predicted": (M + 1, several(2)), "magnify": (10.0, ONE)},
-        paired=("m", "predicted"),
-    ),
     # calibration
-    figure(calibration.draw_arrow, {"J": (np.eye(14), SINGLE)}, shared=2),
     figure(
         calibration.draw_cube,
         {"side": (20.0, ONE), "origin": (np.array([5.0, 5]), several(2))},

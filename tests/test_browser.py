@@ -235,12 +235,21 @@ def explorers(page, run_once):
     return run_once
 
 
+# Both families of the pages, each in three faces.
+TYPE_IS_THERE = """() => {
+    const ours = [...document.fonts].filter(face => /cvnotes s(erif|ans)/.test(face.family));
+    return ours.length === 6 && ours.every(face => face.status === "loaded");
+}"""
+
+
 def _write_scratch(path, *sources):
-    kernel = {"name": "python3", "display_name": "Python 3"}
-    notebook = nbformat.v4.new_notebook(metadata={"kernelspec": kernel})
     cells = ["from cvnotes.show import explore", *sources]
-    notebook.cells = [nbformat.v4.new_code_cell(source) for source in cells]
-    nbformat.write(notebook, path)
+    _write(path, *(nbformat.v4.new_code_cell(source) for source in cells))
+
+
+def _write(path, *cells):
+    kernel = {"name": "python3", "display_name": "Python 3"}
+    nbformat.write(nbformat.v4.new_notebook(metadata={"kernelspec": kernel}, cells=[*cells]), path)
 
 
 def _open(page, name):
@@ -382,6 +391,26 @@ def test_a_chapter_that_was_run_and_saved_opens_with_the_picture_and_no_error(pa
     assert "Error displaying widget" not in shown
     assert "Run this cell to move its sliders" in shown
     page.evaluate(SHUT_DOWN)
+
+
+@pytest.mark.once
+def test_a_notebook_of_the_course_has_the_type_of_its_pages_and_no_other_notebook_has(page, course):
+    ours, other = course[0] / "ours.ipynb", course[0] / "other.ipynb"
+    for path, code in ((ours, "from cvnotes.show import explore"), (other, "import numpy")):
+        _write(path, nbformat.v4.new_markdown_cell(60 * "word "), nbformat.v4.new_code_cell(code))
+        _open(page, path.name)
+        line = page.locator(".jp-NotebookPanel:not(.lm-mod-hidden) .jp-RenderedMarkdown p").last
+        line.wait_for()
+        said = (
+            "e => [getComputedStyle(e).fontFamily.split(',')[0], e.getBoundingClientRect().width]"
+        )
+        if path is other:
+            assert "cvnotes" not in line.evaluate(said)[0]
+            continue
+        page.wait_for_function(TYPE_IS_THERE, polling=100)
+        family, width = line.evaluate(said)
+        assert family == '"cvnotes serif"'
+        assert width <= 47 * 16
 
 
 def test_a_viewer_takes_the_paper_of_its_page_and_keeps_ink_apart_from_it(empty_page):

@@ -22,6 +22,7 @@ from cvnotes.show import (
     draw_lines,
     draw_points,
     eight_projects,
+    exercise_map,
     one_corner,
     panels,
     show,
@@ -459,21 +460,23 @@ def test_a_link_of_chapter_7_has_its_number_once_its_section_is_read():
         chain("K")
 
 
-def test_the_sheet_of_projects_has_eight_tiles_and_what_is_drawn_stays_within_them():
+def test_the_sheets_of_projects_and_exercises_have_tiles_and_what_is_drawn_stays_within_them():
     from xml.etree import ElementTree
 
-    picture = eight_projects()
-    for drawing, columns in ((picture.data, 4), (picture.narrow, 2)):
-        tiles = ElementTree.fromstring(drawing).findall("{*}g")
-        places = [re.findall(r"[\d.]+", tile.get("transform")) for tile in tiles]
-        assert len({x for x, _ in places}) == columns
-        assert [tile.find("{*}text").text[0] for tile in tiles] == list("12345678")
-        for tile in tiles:
-            for path in tile.findall("{*}g//{*}path"):
-                if re.fullmatch(r"[ML\d. -]+Z?", path.get("d")):
-                    xy = np.array(re.findall(r"-?[\d.]+", path.get("d")), float).reshape(-1, 2)
-                    assert (xy >= 0).all(), path.get("d")
-                    assert (xy <= [204, 140]).all(), path.get("d")
+    for picture, names, wide in (
+        (eight_projects(), [*"12345678"], 4), (exercise_map(), [*"PTLHZWMIYT"], 5),
+    ):  # fmt: skip
+        for drawing, columns in ((picture.data, wide), (picture.narrow, 2)):
+            tiles = ElementTree.fromstring(drawing).findall("{*}g")
+            places = [re.findall(r"[\d.]+", tile.get("transform")) for tile in tiles]
+            assert len({x for x, _ in places}) == columns
+            assert [tile.find("{*}text").text[0] for tile in tiles] == names
+            for tile in tiles:
+                for path in tile.findall("{*}g//{*}path"):
+                    if wide == 4 and re.fullmatch(r"[ML\d. -]+Z?", path.get("d")):
+                        xy = np.array(re.findall(r"-?[\d.]+", path.get("d")), float).reshape(-1, 2)
+                        assert (xy >= 0).all(), path.get("d")
+                        assert (xy <= [204, 140]).all(), path.get("d")
 
 
 def test_on_a_telephone_the_head_of_a_chapter_has_two_rows_in_which_no_words_meet():
@@ -539,7 +542,7 @@ def test_an_index_stands_lower_than_its_letter_and_an_exponent_higher():
     assert tops["x²"][1] < tops["x"][1] - 4
 
 
-@pytest.mark.parametrize("picture", [one_corner(6), chain("H"), eight_projects()])
+@pytest.mark.parametrize("picture", [one_corner(6), chain("H"), eight_projects(), exercise_map()])
 def test_a_strip_brings_the_letters_that_it_shows_in_both_weights(picture):
     for svg in (picture.data.decode(), picture.narrow.decode()):
         texts = re.findall(r"<text([^>]*)>([^<]+)", svg)

@@ -56,7 +56,7 @@ def test_it_counts_its_questions_and_its_notebooks():
     page = front_page.front_page(live=True, lite=True)
     numbers = dict(enumerate(("Ten", "Eleven", "Twelve", "Thirteen", "Fourteen"), 10))
     assert f"## {numbers[len(CHAPTERS)]} questions" in page
-    assert f"{numbers[len(CHAPTERS) + 1]} notebooks find it" in page
+    assert f"{numbers[len(CHAPTERS) + 1]} notebooks find all this" in page
 
 
 def test_the_hours_it_names_are_those_of_all_chapters():

@@ -310,26 +310,27 @@ def test_a_paragraph_can_be_read_in_one_go(path):
     assert [part for part in paragraphs if len(part.split()) > 105 and part[0] not in "|#<"] == []
 
 
-def test_the_map_of_the_further_exercises_names_each_with_its_stars_and_chapter():
-    prose = _prose(_read(FURTHER))
-    rows = re.findall(r"^\|\[(\d+)\]\((\d\d)_\w+\.ipynb\)\|(.*)\|$", prose, re.M)
-    assert all(int(chapter) == int(name) for chapter, name, _ in rows)
-    said, there, chapter = {}, {}, ""
-    for number, _, cells in rows:
-        *tasks, projects = cells.split("|")
-        for task, stars in re.findall(r"(\w+) (★+)", " ".join(tasks)):
-            said[task] = (number, stars)
-        said |= {f"project {project}": number for project in re.findall(r"\d+", projects)}
-    for line in prose.split("## Eight projects")[0].splitlines():
-        if found := re.search(r"After \[chapter (\d+)\]", line):
-            chapter = found[1]
+def test_the_map_of_the_further_exercises_names_each_with_its_stars_and_section():
+    there, section = {}, ""
+    for line in _prose(_read(FURTHER)).split("## Eight projects")[0].splitlines():
+        section = line[3:].replace("'", "’") if line.startswith("## ") else section
         if task := re.match(r"\*\*(\w+)\. (★+)", line):
-            there[task[1]] = (chapter, task[2])
-    for project, chapters in re.findall(
-        r"^\*\*(\d)\. ★+ .*?\*\* \(([\d, ]+)\)", prose.replace("(chapters ", "("), re.M
-    ):
-        there[f"project {project}"] = str(max(map(int, chapters.split(","))))
-    assert said == there
+            there.setdefault(section, []).append(f"{task[1]} {task[2]}")
+    said = re.findall(r"(\w[\w’ ]+): ((?:\w+ ★+(?:, )?)+)", show.exercise_map().alt)
+    # Numbers, which are checked, stand before letters, which are for paper.
+    assert said == [(name, ", ".join(sorted(tasks, key=lambda task: task[0].isalpha())))
+                    for name, tasks in there.items()]  # fmt: skip
+
+
+def test_projects_and_exercises_are_numbered_as_they_stand():
+    prose = _prose(_read(FURTHER))
+    before, after = prose.split("## Eight projects")
+    numbers = re.findall(r"^\*\*(\w+)\. ★", before, re.M)
+    assert [n for n in numbers if n.isdigit()] == [str(n) for n in range(1, 14)]
+    assert [n for n in numbers if n.isalpha()] == list("ABCDEFG")
+    assert re.findall(r"^\*\*(\d)\. ★+ .*?\*\* \((?:chapters )?[\d, ]+\)", after, re.M) == [
+        *"12345678"
+    ]
 
 
 @each_notebook

@@ -7,49 +7,11 @@ from scipy import ndimage
 
 from cvnotes.base import DegenerateError, ShapeError
 from cvnotes.camera import Camera, Lens, intrinsics, look_at
-from cvnotes.show import draw_arrow, draw_cube, draw_image
+from cvnotes.show import draw_cube, draw_image
 
 CENTRE = np.array([320.0, 240])
 SENSOR = intrinsics(400, 400, *CENTRE)
 DESK = look_at([226, 345, -185], [100, 62, 0], up=(0, 0, -1))
-
-
-# The arrow.
-
-
-def test_the_arrow_has_a_border_and_a_block_for_each_view():
-    J = np.zeros((8, 14))
-    J[:, :2], J[:4, 2:8], J[4:, 8:] = np.random.default_rng(0).normal(size=(8, 14)).T[:2].T, 1, 1
-    left, right, _ = draw_arrow(J, 2)
-    shades = right.images[0].get_array()
-    assert (shades[2:8, 8:] == 0).all()  # two views have nothing to say to each other
-    assert (shades[:2] > 0).all()
-    assert np.array_equal(left.images[0].get_array() > 0, J != 0)
-    with pytest.raises(ShapeError, match=r"expected \(n, 3 \+ 6 n_views\), got \(8, 14\)"):
-        draw_arrow(J, 3)
-
-
-def test_what_remains_of_the_arrow_is_the_inverse_of_the_cameras_corner_of_the_covariance():
-    rng = np.random.default_rng(1)
-    J = np.zeros((40, 15))
-    J[:, :3] = rng.normal(size=(40, 3))
-    J[:20, 3:9], J[20:, 9:] = rng.normal(size=(2, 20, 6))
-    last = draw_arrow(J, 3)[2]
-    J = J / np.linalg.norm(J, axis=0)
-    schur = np.linalg.inv(np.linalg.inv(J.T @ J)[:3, :3])
-    shades = np.asarray(last.images[0].get_array())
-    assert np.allclose(shades, np.abs(schur) ** 0.35, atol=1e-9)
-    assert last.get_title() == "remains: 3 × 3"
-    beside = [float(note.get_text().rstrip(" %")) for note in last.texts]
-    assert np.allclose(beside, 100 * np.sqrt(np.diag(schur)), rtol=0.05)
-
-
-def test_what_a_pose_imitates_remains_not_at_all():
-    J = np.zeros((8, 8))
-    J[:4, :2] = J[:4, 2:4] = np.eye(4)[:, :2]
-    J[:, 1] += np.eye(8)[7]
-    last = draw_arrow(J, 2)[2]
-    assert [note.get_text() for note in last.texts] == ["0 %", "71 %"]
 
 
 # The cube.

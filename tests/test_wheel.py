@@ -80,7 +80,7 @@ def test_notebooks_and_data_are_in_the_wheel_and_nothing_else_of_the_clone(wheel
             if path.is_file():
                 assert f"cvnotes/course/{path.relative_to(ROOT).as_posix()}" in names
     assert {name.split("/")[0].split("-")[0] for name in names} == {"cvnotes"}
-    ours = "share/jupyter/labextensions/cvnotes-stills/package.json"
+    ours = "share/jupyter/labextensions/cvnotes-course/package.json"
     assert any(name.endswith(ours) for name in names)
     docs = {name.removeprefix("cvnotes/course/") for name in names if "/docs/" in name}
     assert docs == set(pages(ROOT / "notebooks"))  # those to which notebooks lead, and no others

@@ -34,6 +34,8 @@ CONFIG = {
     "jupyter-config-data": {
         "appName": "cvnotes",
         "exposeAppInBrowser": True,  # for the tests
+        "cvnotesSerif": "../../../../_static/fonts/serif-*.woff",  # the site's: see course.js
+        "cvnotesSans": "../../../../_static/fonts/sans-*.woff",
         "litePluginSettings": {
             KERNEL: {
                 "pyodideUrl": "./../python/pyodide.js",

@@ -28,7 +28,7 @@ EXPLORED = "cube"
 CARD = (480, 320)  # px: twice what is shown
 # Cards that are a part of an exploration: its settings, the left and upper end, the width in px.
 PARTS = {
-    "03_camera_model": ("divide", {}, (90, 122, 270)),
+    "03_camera_model": ("glass", {}, (6, 88, 360)),
     "05_calibration_targets": ("subpixel", {"u": 0.38, "v": -0.47}, (95, 122, 260)),  # pulled right
     "06_homography_dlt": ("homography", {"u": 0.0, "v": 0.0}, (20, 42, 346)),
     "07_zhang_calibration": ("nails", {}, (6, 44, 500)),
@@ -39,6 +39,11 @@ _ROW = re.compile(r"^\| (\S+) \| \[(.+?)\]\(notebooks/(\w+)\.ipynb\) \| (.+?) \|
 _PART = re.compile(r"^\|(\w+)\|\[.+?\]\((\w+)\.ipynb\)\|.+\|(\S+)\|$", re.M)
 _IMAGE = re.compile(r'src="data:image/(?:png|webp);base64,([^"]+)"')
 
+# What is drawn on the buttons: an open book, a triangle in a ring, a camera.
+BOOK = "M12 6v14M12 6C9 4 6 4 2.5 4.5v14C6 18 9 18 12 20c3-2 6-2 9.5-1.5v-14C18 4 15 4 12 6"
+PLAY = "M12 2.5a9.5 9.5 0 1 0 .01 0zM9.8 7.8v8.4l6.8-4.2z"
+LENS = "M2.5 7h4.5l2-3h6l2 3h4.5v13h-19zM12 9a4.2 4.2 0 1 0 .01 0z"
+
 # The most frequent mistake of all, as a student writes it.
 WRONG = """def my_camera_centre(R, T):
     return T
@@ -46,9 +51,9 @@ WRONG = """def my_camera_centre(R, T):
 
 check("camera_centre", my_camera_centre)"""
 # Before the picture, which follows the hand.
-QUESTION = """<p class="front-question"><strong>Pull the camera nearer</strong> in the picture from
-the side, as if we had mistaken where it stood: dashed lines show where the tower belongs. Can you
-bring it back by pulling only the camera's glass pane?</p>"""
+QUESTION = """<p class="front-question"><strong>The tower is not there:</strong> it is drawn where
+the camera would see it. Pull it. Then pull the camera nearer, as if we had mistaken where it stood.
+Can its glass pane alone bring the tower back into the dashed lines?</p>"""
 # Below it.
 SOLUTION = """<details><summary>Answer</summary><p>No, one spot at most: where the foot is right,
 the top is not. <a href="notebooks/00_start_here.html">Chapter 0</a> says why.</p></details>"""
@@ -114,14 +119,14 @@ def buttons(live: bool, lite: bool) -> str:
     own = "your_camera.html" if live else "notebooks/09_your_own_camera.html"
     at_home = "on your machine", ""
     ways = (  # on a telephone only the name, and what it costs
-        (f"{start}.html", "Read", "chapter 0, half an hour", ""),
-        (run, "Run", *(("the course's Python, in this page, ", "66 MB once") if lite else at_home)),
-        (own, "Your own camera", "photographs of a chessboard in, its numbers out", ""),
+        (f"{start}.html", BOOK, "Read", "chapter 0, half an hour", ""),
+        (run, PLAY, "Run", *(("Python in this page, ", "66 MB once") if lite else at_home)),
+        (own, LENS, "Your own camera", "from photographs of a chessboard", ""),
     )
     return "\n".join(
-        f'<a href="{to}"><strong>{name}</strong> '
-        f'<span><span class="front-what">{what}</span>{cost}</span></a>'
-        for to, name, what, cost in ways
+        f'<a href="{to}"><svg viewBox="0 0 24 24" aria-hidden="true"><path d="{sign}"/></svg>'
+        f'<strong>{name}</strong> <span><span class="front-what">{what}</span>{cost}</span></a>'
+        for to, sign, name, what, cost in ways
     )
 
 

@@ -173,6 +173,10 @@ def start_server(
     command += ["--LabApp.check_for_updates_class=jupyterlab.NeverCheckForUpdate"]
     command += ["--LabApp.extension_manager=readonly"]
     command += [f"--LabApp.extra_labextensions_path={_JUPYTER / 'labextensions'}"]
+    for family in ("sans", "serif"):  # the type of the pages, which course.js asks for
+        if found := importlib.util.find_spec(f"font_source_{family}_pro"):
+            files = Path(found.origin or "").parent / "files"
+            command.append(f"--ServerApp.extra_static_paths={files}")
     if hasattr(os, "geteuid") and os.geteuid() == 0:
         command.append("--allow-root")
     # The token goes by the environment, which other users cannot read; the kernel is this Python.

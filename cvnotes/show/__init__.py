@@ -3,14 +3,13 @@
 from cvnotes.show.axes import panels
 from cvnotes.show.banner import one_corner
 from cvnotes.show.explorations import explore, pull_points
-from cvnotes.show.figures.calibration import draw_arrow, draw_cube
-from cvnotes.show.figures.estimates import draw_plane_error
+from cvnotes.show.figures.calibration import draw_cube
 from cvnotes.show.figures.ideas import draw_meanings
 from cvnotes.show.figures.images import draw_corners, draw_image, draw_points
 from cvnotes.show.figures.lines import draw_lines, draw_segments
 from cvnotes.show.links import chain
 from cvnotes.show.picture import Picture, show
-from cvnotes.show.projects import eight_projects
+from cvnotes.show.projects import eight_projects, exercise_map
 from cvnotes.show.space.camera_shapes import (
     camera_shapes,
     ray_shapes,
@@ -42,13 +41,12 @@ __all__ = [
     "draw_segments",
     # the colours
     "draw_meanings",
-    # chapter 7: its strip, the picture of J, a cube on the board
+    # chapter 7: its strip, a cube on the board
     "chain",
-    "draw_arrow",
     "draw_cube",
     # the further exercises
-    "draw_plane_error",
     "eight_projects",
+    "exercise_map",
     # in space
     "draw_scene",
     "build_scene",

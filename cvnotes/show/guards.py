@@ -14,7 +14,6 @@ from cvnotes.base import (
     points,
     real,
     rigid_motion,
-    whole,
 )
 
 Kind = TypeVar("Kind")
@@ -37,17 +36,6 @@ def length(x: Any, name: str) -> float:
             f"{name} = {value:g} but must be positive, from {_SHORTEST:g} to {_LONGEST:g}"
         )
     return value
-
-
-def count(x: Any, name: str) -> int:
-    """Guard how many lines or columns are drawn: a whole number from 1 to 1000.
-
-    Examples
-    --------
-    >>> count(9, "lines")
-    9
-    """
-    return whole(x, name, at_most=_MOST)
 
 
 def thing(x: Any, name: str, kind: type[Kind]) -> Kind:

@@ -28,7 +28,7 @@ NAMES = "rotation", "shrinking", "homography", "lens"
 _LARGER = 6  # px of the page for a pixel of the photograph
 _NEAR = 4  # pixels that the enlarged piece is wide and high
 _EVERY = 3  # px from one line that a lens draws to the next
-_DOT = 2  # px of the page that a dot is wide: each new pixel has one
+_DOT = 2.5  # px of the page that a dot is wide: each new pixel has one
 _MIDDLE = (np.array(SIZE) - 1) / 2
 _CORNERS = np.array([[6300, -900], [8900, -900], [8900, 300], [6300, 300]])  # of the print, mm
 _MARGIN, _PIXEL = 120, 2840 / SIZE[0]  # of the wall around it, and side of a new pixel, mm
@@ -46,7 +46,7 @@ def asks_model() -> Model:
     about = (
         "A new picture, one pixel of it framed; a line to the place in the photograph where it "
         "asks; and the four pixels around that place, enlarged, with their weights and their mix. "
-        "Each new pixel has a dot where it asks."
+        "Each new pixel has a dot where it asks, orange where the next one is over a pixel away."
     )
     drags = {"pixel": lambda _, at: {"u": float(at[0]), "v": float(at[1])}}
     return Model("asks", about, settings, _draw, drags)
@@ -105,7 +105,11 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     shown = (_LARGER * SIZE[0], _LARGER * SIZE[1])
     left = paper.picture_panel(shown, SIZE, "the new picture: pull the pixel that asks")
     left.image(new, smooth=False)
-    out, where, there = not ((at > -1) & (at < SIZE)).all(), "", "where they ask in the photograph"
+    out, where, there = (
+        not ((at > -1) & (at < SIZE)).all(),
+        "",
+        "where they ask, orange if over 1 px apart",
+    )
     if warp == 4:
         nearer = f"{np.hypot(*(at - here)):.2f} px nearer to the middle"
         where, there = f", {nearer}", f"it asks {nearer}"
@@ -119,7 +123,9 @@ def _draw(paper: Paper, values: Values) -> Drawing:
         right.segments(ways.reshape(-1, 2, 2), "white", 3.2)
         right.segments(ways.reshape(-1, 2, 2), LENS, 1.8)
     half = _DOT / 2 * right.pixel
-    right.polygons([_square(dot - half, 2 * half)[:4] for dot in asked.reshape(-1, 2)], LENS)
+    far = apart(asked)
+    inks = np.where(far.max(axis=-1) > 1.000001, ESTIMATED, LENS).ravel().tolist()
+    right.polygons([_square(dot - half, 2 * half)[:4] for dot in asked.reshape(-1, 2)], inks)
     if warp == 4:
         _framed(left, _HALF + 0.8 * circle(25), 1)
         _framed(right, (here, at), 4)
@@ -129,7 +135,7 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     _framed(right, _square(np.floor(at) - 0.5, 2), 2)
     left.grip("pixel", "a pixel of the new picture", here, wide)
     near, mix = _near(paper, photo, asked, (u, v)), _mix(paper, photo, at)
-    across, down = apart(asked, u, v)
+    across, down = far[v, u]
     sentence = (
         f"New pixel ({u}, {v}) asks at ({at[0]:.2f}, {at[1]:.2f}){where}; its neighbour in the row "
         f"asks {across:.2f} px from there, the one in the column {down:.2f} px. All "
@@ -158,12 +164,15 @@ def _pale(photo: Drawn) -> Drawn:
     return np.asarray(np.rint(0.6 * photo + 102), dtype=np.uint8)
 
 
-def apart(asked: Array, u: int, v: int) -> tuple[float, float]:
-    """Return how far from where a pixel asks the next ones across and down do, in old pixels."""
-    height, width = asked.shape[:2]
-    x, y = min(u, width - 2), min(v, height - 2)  # on the last ones: from the ones before them
-    across, down = asked[v, x + 1] - asked[v, x], asked[y + 1, u] - asked[y, u]
-    return float(np.hypot(*across)), float(np.hypot(*down))
+def apart(asked: Array) -> Array:
+    """Return how far from where each pixel asks the next one across and down does (h, w, 2), in px.
+
+    For the last ones it is that of the ones before them.
+    """
+    across, down = (np.linalg.norm(np.diff(asked, axis=k), axis=2) for k in (1, 0))
+    ends = ((0, 0), (0, 1)), ((0, 1), (0, 0))
+    both = [np.pad(far, end, "edge") for far, end in zip((across, down), ends, strict=True)]
+    return np.stack(both, axis=-1)
 
 
 def _square(corner: Array, side: float) -> Array:

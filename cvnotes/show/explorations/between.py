@@ -16,7 +16,6 @@ _REACH = 0.36  # px beyond the centres
 _PIXEL = 0.09  # px from the centre to the side of the little squares that stand for the pixels
 _FINE = 120  # the surface is drawn in so many steps
 _LIGHT = 117  # grey level on which black and white are read equally well
-_ROOM = 0.05  # of the square's height: what is lower has no room for words
 
 
 def between_model() -> Model:
@@ -27,7 +26,7 @@ def between_model() -> Model:
     )
     about = (
         "Four pixels and a place between their centres, which cuts the square between them into "
-        "four rectangles; the same as a smooth surface; and the grey values it is mixed of."
+        "four rectangles; and the same as a smooth surface."
     )
     drags = {"place": lambda _, at: {"du": float(at[0]), "dv": float(at[1])}}
     return Model("between", about, settings, _draw, drags)
@@ -41,7 +40,7 @@ def weights(du: float, dv: float) -> Array:
 def _draw(paper: Paper, values: Values) -> Drawing:
     du, dv = values["du"], values["dv"]
     place, weight = np.array([du, dv]), weights(du, dv)
-    panels = _areas(paper, place, weight), _surface(paper, place), _mix(paper, weight)
+    panels = _areas(paper, place, weight), _surface(paper, place)
     terms = " + ".join(f"{w:.2f} · {g:g}" for w, g in zip(weight, _GREY, strict=True))
     nearest = ", or ".join(f"{g:g}" for g in _GREY[weight > weight.max() - 1e-9])
     return Drawing(
@@ -52,7 +51,7 @@ def _draw(paper: Paper, values: Values) -> Drawing:
 
 def _cell(paper: Paper, title: str) -> Panel:
     """Make a panel with the square between four centres."""
-    return paper.panel((330, 330), (-_REACH, 1 + _REACH), (-_REACH, 1 + _REACH), title)
+    return paper.panel((400, 400), (-_REACH, 1 + _REACH), (-_REACH, 1 + _REACH), title)
 
 
 def _box(low: npt.ArrayLike, high: npt.ArrayLike) -> Array:
@@ -71,7 +70,7 @@ def _areas(paper: Paper, place: Array, weight: Array) -> Panel:
     for ends in (_box([0, 0], [1, 1])[0], *_box([0, 0], place), *_box(place, [1, 1])):
         panel.line([*ends, ends[0]], ESTIMATED, 1.5)
     for at, name, grey, w in zip(_AT, _NAMES, _GREY, weight, strict=True):
-        panel.text(at + (at - 0.5) * [0, 0.55], f"{name} = {grey:g}", LENS, anchor="mm", size=13)
+        panel.text(at + (at - 0.5) * [0, 0.55], f"{name} = {grey:g}", LENS, anchor="mm", size=15)
         if (np.abs(1 - at - place) > [0.31, 0.12]).all():
             _write(panel, (1 - at + place) / 2, f"{name} × {w:.2f}", grey)
     panel.mark(place, "estimated", 8)
@@ -100,21 +99,7 @@ def _surface(paper: Paper, place: Array) -> Panel:
     return panel
 
 
-def _mix(paper: Paper, weight: Array) -> Panel:
-    """Draw the four grey values as high as they weigh, beside what they mix to."""
-    panel = paper.panel((180, 330), (0, 3), (0, 1), "the mix")
-    feet = np.cumsum(weight)
-    for foot, w, grey, name in zip(feet, weight, _GREY, _NAMES, strict=True):
-        panel.polygons(_box([0, foot - w], [2, foot]), hexed(3 * [grey]))
-        if w >= _ROOM:
-            _write(panel, np.array([1, foot - w / 2]), f"{name} × {w:.2f}", grey)
-    value = float(weight @ _GREY)
-    panel.polygons(_box([2, 0], [3, 1]), hexed(3 * [np.rint(value)]))
-    _write(panel, np.array([2.5, 0.5]), f"{value:.0f}", value)
-    return panel
-
-
 def _write(panel: Panel, at: Array, words: str, grey: float) -> None:
     """Write on grey: white on what is dark, black on what is light."""
     ink = IDEAL if grey > _LIGHT else "#FFFFFF"
-    panel.text(at, words, ink, anchor="mm", size=13, rim=hexed(3 * [grey]))
+    panel.text(at, words, ink, anchor="mm", size=15, rim=hexed(3 * [grey]))

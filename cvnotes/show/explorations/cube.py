@@ -1,10 +1,10 @@
 """Explore a calibrated camera: a tower stands on a photographed board, and with a wrong one not."""
 
 from functools import lru_cache
-from typing import NamedTuple
+from itertools import product
 
 import numpy as np
-from PIL import Image, ImageChops, ImageDraw, ImageFilter
+from PIL import Image, ImageDraw, ImageFilter
 
 from cvnotes.base import Array
 from cvnotes.calibration import pose_from_view
@@ -27,35 +27,29 @@ _CAMERA = Camera(
     lens=Lens(k=(-0.25, 0.1)),
     size=(1280, 960),
 )
-_BESIDE = Camera(  # the same from the side, from so far that it is nearly a drawing
-    intrinsics(3500, 3500, 399.5, 404.5),
-    look_at([2500, 500, -500], [110, 196, -145], up=(0, 0, -1)),
-    size=(800, 810),
+_BESIDE = Camera(  # the same from the side
+    intrinsics(1500, 1500, 539.5, 404.5),
+    look_at([1080, 560, -430], [118, 205, -128], up=(0, 0, -1)),
+    size=(1080, 810),
 )
 _GLASS, _EDGE = "#E3F1FB", mixed("#FFFFFF", CAMERA, 0.8)
 _BORDER, _SQUARES = paper_and_squares(_BOARD)
 _LIGHT = np.array(DESK_LIGHT) / np.linalg.norm(DESK_LIGHT)
-_WINDOW = "#4A2E18"
-_PAINT = np.array([[246, 150, 60], [236, 134, 46]])  # two tints of the tower's tiles
+_SUN, _SKY = np.array([0.80, 0.72, 0.60]), np.array([0.54, 0.54, 0.60])  # warm and cool light
+_BRICK, _STONE = np.array([246.0, 132, 54]), np.array([228.0, 172, 116])
+_PANES, _FRAME = np.array([44.0, 60, 84]), np.array([255.0, 226, 190])
+_ARCH = np.array([[-3.2, -5], [3.2, -5], [3.2, 2], [2.3, 4.3], [0, 5.2], [-2.3, 4.3], [-3.2, 2]])
+_COURSE, _STOREY = 5, 24  # mm, how high a row of bricks is, and a row of windows
 _EDGES = [(i, (i + 1) % 4 + i // 4 * 4) for i in range(8)] + [(i, i + 4) for i in range(4)]
 _SIDES = [[i + 3, i + 4, i, i - 1] for i in range(1, 4)]
 _FACES = np.array([[4, 5, 6, 7], [7, 4, 0, 3], *_SIDES])  # the roof, and the sides
-_SHADED, _SOFT = 0.42, 6  # what a shadow leaves of the light; px of its edge
-_CLOSE, _NEAR = 210, 14  # of 255, how dark it is under a foot; px that this reaches
-
-
-class _Photo(NamedTuple):
-    """A photograph of the desk, lit and in the shade."""
-
-    lit: Image.Image
-    dark: Image.Image
+_SHADED, _SOFT = 0.42, 8  # what a shadow leaves of the light; px of its edge
 
 
 @lru_cache(maxsize=2)
-def photo(aside: bool = False) -> _Photo:
+def photo(aside: bool = False) -> Image.Image:
     """Photograph the desk, by the camera or from the side."""
-    lit = render_scene(desk(_BOARD), _BESIDE if aside else _CAMERA)
-    return _Photo(Image.fromarray(lit), Image.fromarray((lit * _SHADED).astype(np.uint8)))
+    return Image.fromarray(render_scene(desk(_BOARD), _BESIDE if aside else _CAMERA))
 
 
 @lru_cache(maxsize=2)
@@ -64,7 +58,7 @@ def found(lens: bool) -> Camera:
 
     On a page there is no OpenCV, and so no finder of boards: whole pixels are its start.
     """
-    grey = np.asarray(photo().lit).mean(axis=2)
+    grey = np.asarray(photo()).mean(axis=2)
     m = refine_subpixel(grey, _CAMERA.project(_BOARD.points).round())
     bare = Camera(_CAMERA.A, lens=_CAMERA.lens if lens else Lens(), size=_CAMERA.size)
     return bare.moved(pose_from_view(bare, _BOARD.points, m))
@@ -107,12 +101,16 @@ def cube_model() -> Model:
         if off.max() > 1:
             for i, j in _EDGES:  # where it belongs
                 edge = corners[i] + np.linspace(0, 1, 9)[:, None] * (corners[j] - corners[i])
-                panel.line(_CAMERA.project(edge), IDEAL, 1.2, dash=4)
+                panel.line(_CAMERA.project(edge), "white", 1.6)
+                panel.line(_CAMERA.project(edge), IDEAL, 1.6, dash=4)
         panel.grip("foot", "the foot of the tower", camera.project([*foot, 0]), 5)
         panel.grip("top", "the top of the tower", camera.project([*foot, -h]), 12)
+        u, v = ((0, 1080), (95, 665)) if paper.narrow else ((160, 960), (0, 810))
+        shown = (np.ptp(u) // 2, np.ptp(v) // 2)  # px of the page
         title = "from the side: pull the camera, or its glass pane"
-        aside = paper.picture_panel((400, 405), _BESIDE.size, title)
-        aside.image(_in_the_shade(photo(aside=True), _BESIDE, base, h))
+        aside = paper.panel(shown, (u[0] - 0.5, u[1] - 0.5), (v[0] - 0.5, v[1] - 0.5), title)
+        beside = _in_the_shade(photo(aside=True), _BESIDE, base, h)
+        aside.image(beside[slice(*v), slice(*u)])
         _draw_tower(aside, _BESIDE, base, h)
         _draw_camera(aside, camera, corners)
         return Drawing(paper.join((panel, aside)), _sentence(values, off))
@@ -152,48 +150,85 @@ def _along_the_axis(at: Array) -> float:
     return float(far[np.linalg.norm(seen - at, axis=1).argmin()])
 
 
-def _shadow(base: Array, h: float) -> Array:
-    """Return polygons (5, 4, 2) of the board that together are in the tower's shadow."""
-    fallen = base + h * _LIGHT[:2] / _LIGHT[2]
-    swept = [[base[i - 1], base[i], fallen[i], fallen[i - 1]] for i in range(4)]
-    return np.array([*swept, fallen])
+def _shadow(boxes: Array) -> Array:
+    """Return polygons (n, 4, 2) of the board that together are in the shadow of boxes."""
+    corners = boxes[:, [[0, 0], [1, 0], [1, 1], [0, 1]], [0, 1]]
+    ends = [corners - boxes[:, z, 2, None, None] * _LIGHT[:2] / _LIGHT[2] for z in (0, 1)]
+    swept = np.concatenate([np.stack([one, np.roll(one, 1, axis=1)], 2) for one in ends], 2)
+    return np.concatenate([ends[0], swept[:, :, [0, 1, 3, 2]].reshape(-1, 4, 2)])
 
 
-def _in_the_shade(of: _Photo, camera: Camera, base: Array, h: float) -> Drawn:
-    """Darken what lies in the tower's shadow, and, softer, what lies close round its foot."""
-    seen = camera.project(np.insert(_shadow(base, h), 2, 0, axis=-1))
-    w, height = camera.size
-    mask = Image.new("L", (w // 2, height // 2))
-    for corners in seen / 2:
+def _in_the_shade(lit: Image.Image, camera: Camera, base: Array, h: float) -> Drawn:
+    """Darken what lies in the tower's shadow, and what lies close round its foot."""
+    fallen = [*_shadow(tower(base.mean(axis=0), h)), base]
+    mask = Image.new("L", (camera.size[0] // 2, camera.size[1] // 2))
+    for corners in camera.project(np.insert(fallen, 2, 0, axis=-1)) / 2:
         ImageDraw.Draw(mask).polygon(corners.ravel().tolist(), 255)
-    soft = mask.filter(ImageFilter.GaussianBlur(_SOFT / 2))
-    foot, round_it = camera.project(np.insert(base, 2, 0, axis=-1)) / 2, Image.new("L", mask.size)
-    ImageDraw.Draw(round_it).polygon(foot.ravel().tolist(), _CLOSE)
-    round_it = ImageChops.lighter(soft, round_it.filter(ImageFilter.GaussianBlur(_NEAR / 2)))
-    return np.asarray(Image.composite(of.dark, of.lit, round_it.resize(camera.size)))
+    soft = mask.filter(ImageFilter.GaussianBlur(_SOFT / 2)).resize(camera.size)
+    return np.asarray(Image.composite(lit.point(lambda level: _SHADED * level), lit, soft))
+
+
+def tower(foot: Array, h: float) -> Array:
+    """Return the boxes (n, 2, 3) of a tower from below: its base, wall, ledge and battlements."""
+    base, ledge = min(6, 0.15 * h), min(16, 0.5 * h)
+    low = [(25, 0, base), (21, base, h - ledge), (25, h - ledge, h - 0.55 * ledge)]
+    boxes = [[[-w, -w, -top], [w, w, -bottom]] for w, bottom, top in low]
+    for i, j in product((-19, 0, 19), repeat=2):
+        if i or j:
+            boxes += [[[i - 6, j - 6, -h], [i + 6, j + 6, 0.55 * ledge - h]]]
+    return np.add(boxes, [*foot, 0])
 
 
 def _draw_tower(panel: Panel, camera: Camera, base: Array, h: float) -> Array:
-    """Draw the tower's faces that are seen, in tiles; returns its corners (8, 3)."""
-    corners = np.concatenate([np.insert(base, 2, z, axis=1) for z in (0, -h)])
-    middle = (corners[0] + corners[6]) / 2
-    for a, b, c, d in corners[_FACES]:
-        outside = (a + c) / 2 - middle
-        outside = outside / np.linalg.norm(outside)
-        if outside @ (camera.centre - a) <= 0:
-            continue
-        light = 0.55 + 0.5 * max(float(outside @ _LIGHT), 0)
-        n, k = (round(float(np.linalg.norm(side)) / _SQUARE + 0.1) for side in (b - a, d - a))
-        s, t = np.meshgrid(np.arange(n + 1) / n, np.arange(k + 1) / k)
-        grid = camera.project(a + s[..., None] * (b - a) + t[..., None] * (d - a))
-        for i in range(k):
-            for j in range(n):
-                tile = grid[[i, i, i + 1, i + 1], [j, j + 1, j + 1, j]]
-                panel.polygons(tile[None], hexed(light * _PAINT[(i + j) % 2]))
-                if outside[2] > -0.5:  # not on the roof
-                    middle_of = tile.mean(axis=0)
-                    panel.polygons((middle_of + 0.55 * (tile - middle_of))[None], _WINDOW)
-    return corners
+    """Draw the sides of a tower that are seen; returns the corners (8, 3) of all of it."""
+    boxes, eye = tower(base.mean(axis=0), h), camera.centre
+    far = np.linalg.norm(boxes.mean(axis=1) - eye, axis=1)
+    for k in (0, 1, 2, *(3 + np.argsort(-far[3:]))):
+        for axis, side in product((0, 1, 2), (0, 1)):
+            out = 2 * side - 1
+            if out * (eye[axis] - boxes[k, side, axis]) > 0:
+                _draw_side(panel, camera, boxes[k], axis, out, bricks=k == 1)
+    return np.concatenate([np.insert(base, 2, z, axis=1) for z in (0, -h)])
+
+
+def _draw_side(
+    panel: Panel, camera: Camera, ends: Array, axis: int, out: int, *, bricks: bool
+) -> None:
+    """Draw one side of a box, of stone or of bricks; it is darker near the ground."""
+    across, up = [k for k in (0, 1, 2) if k != axis]
+    width, high = np.ptp(ends, axis=0)[[across, up]].tolist()
+    shapes, paint = _wall(width, high) if bricks else (_tiles(width, high, 4, 1), [_STONE] * 4)
+    corner = ends[0].copy()
+    corner[axis], corner[2] = ends[(out + 1) // 2, axis], ends[int(axis < 2), 2]
+    flat = np.concatenate(shapes)
+    W = np.tile(corner, (len(flat), 1))
+    W[:, across] += flat[:, 0]
+    W[:, up] += flat[:, 1] * (-1 if up == 2 else 1)
+    parts = np.cumsum([len(one) for one in shapes])[:-1]
+    near = [0.3 * np.exp(z.mean() / 12) for z in np.split(W[:, 2], parts)]
+    light = _SKY + _SUN * max(out * float(_LIGHT[axis]), 0)
+    inks = [hexed((light * p * (1 - k)).clip(0, 255)) for p, k in zip(paint, near, strict=True)]
+    panel.polygons(np.split(camera.project(W), parts), inks)
+
+
+def _tiles(width: float, high: float, rows: int, columns: int) -> list[Array]:
+    """Divide a rectangle, from below, into tiles (4, 2)."""
+    one = np.array([width / columns, high / rows])
+    tile = np.array([[0, 0], [1, 0], [1, 1], [0, 1]])
+    return [one * (tile + [j, i]) for i, j in product(range(rows), range(columns))]
+
+
+def _wall(width: float, high: float) -> tuple[list[Array], list[Array]]:
+    """Return a wall's bricks, the shadow of what is above it, and its windows, with colours."""
+    rows = max(round(high / _COURSE), 1)
+    shapes = _tiles(width, high, rows, 4)
+    paint = [_BRICK * (0.9 + 0.05 * (k * 2 % 5)) for k in range(4 * rows)]
+    shapes, paint = [*shapes, _tiles(width, high, 1, 1)[0]], [*paint, 0.62 * _BRICK]
+    shapes[-1][:2, 1] = high - 4
+    for v, u in product(np.arange(12, high - 9, _STOREY), (0.28 * width, 0.72 * width)):
+        shapes += [1.35 * _ARCH + [u, v], _ARCH + [u, v]]
+        paint += [_FRAME, _PANES]
+    return shapes, paint
 
 
 def _draw_camera(panel: Panel, camera: Camera, tower: Array) -> None:

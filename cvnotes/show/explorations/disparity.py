@@ -5,13 +5,13 @@ import numpy as np
 from cvnotes.base import Array
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Panel, Paper
-from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, LENS, MUTED
+from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, LENS, MUTED, mixed
 
 _ALPHA, _BASE = 520.0, 200.0  # px, mm
 _PLANE = 1100.0  # mm, where both pictures are drawn: a pixel is 1100/520 mm there
 _X, _Z = (-400, 620), (5600, -520)  # mm that are shown, from above
-_LOWEST = 70.0  # mm: so high at least is the axis of the error
-_LIGHT, _WARM = "#D1EDE5", "#F3CDAE"
+_TIMES, _DEPTHS = 20, (1000, 2000, 4000)  # errors are drawn so many times larger, there
+_LIGHT, _WARM, _GREY = "#D1EDE5", "#F3CDAE", "#E2E2E2"
 
 
 def disparity_model() -> Model:
@@ -19,12 +19,12 @@ def disparity_model() -> Model:
     settings = (
         Setting("X", "X (mm)", 0, 440, 10, 330, "how far to the right of the left camera"),
         Setting("Z", "Z (mm)", 1500, 4500, 10, 4000, "how far away"),
-        Setting("sigma", "σ of d (px)", 0, 1, 0.05, 0.25, "how well the disparity is known"),
+        Setting("sigma", "σ of d (px)", 0.05, 0.3, 0.05, 0.25, "how well the disparity is known"),
     )
     about = (
         "Two cameras from above that see one point, with the triangle over their base line and the "
-        "similar one over the disparity; around the point where it may lie, and beside it the "
-        "standard deviation of its depth against the depth, and the line of 1 %."
+        "similar one over the disparity. Beside it diamonds, in which a point may lie that is 1, 2 "
+        "or 4 m away: each is four times as long as the one before. Grey is 1 % of the depth."
     )
 
     def pulled(_: Values, at: Array) -> Values:
@@ -73,29 +73,37 @@ def _draw(paper: Paper, values: Values) -> Drawing:
         panel.line(np.array([[x, 0.0], [x, top]]), IDEAL, 1.2)
         panel.segments([[[x - 14, z], [x + 14, z]] for z in (0.0, top)], IDEAL, 1.2)
         panel.text([x + 12, top / 2], name, IDEAL, size=13)
-    by = sigma / 2 * np.array([1, 1, -1, -1]), sigma / 2 * np.array([-1, 1, 1, -1])
-    panel.polygons(triangulated(left + by[0], right + by[1])[None], ESTIMATED)
+    panel.polygons([_diamond(X, Z, sigma)], ESTIMATED)
     panel.mark([X, Z], "world", 4)
     panel.grip("point", "the point that both cameras see", [X, Z], 6)
-    return Drawing(paper.join((panel, _error(paper, Z, sigma))), _sentence(left, right, sigma))
+    return Drawing(paper.join((panel, _diamonds(paper, Z, sigma))), _sentence(left, right, sigma))
 
 
-def _error(paper: Paper, Z: float, sigma: float) -> Panel:
-    """Draw the standard deviation of the depth against the depth."""
-    depths = np.linspace(0, 5000, 41)
-    curve = np.column_stack([depths, depths**2 / (_ALPHA * _BASE) * sigma])
-    top = max(_LOWEST, 1.06 * float(curve[-1, 1]))
-    panel = paper.panel((340, 390), (-400, 5600), (top, -0.1 * top), "σ of Z (mm) against Z (mm)")
-    step = 20 if top < 2 * _LOWEST else 50
-    panel.ticks(x=(1000, 2000, 3000, 4000), y=range(0, round(top), step), size=11)
-    panel.line([[0, 0], [5000, 50]], MUTED, 1, dash=4)
-    panel.text([5060, 50], "1 %", MUTED, anchor="lm", size=12)
-    panel.line(curve, ESTIMATED, 2)
-    here = [Z, Z**2 / (_ALPHA * _BASE) * sigma]
-    panel.mark(here, "estimated", 8)
-    side = 1 if here[1] < 0.01 * Z else -1  # not upon the line of 1 %
-    at, anchor = [Z + 140 * side, here[1] - 0.05 * side * top], "lm" if side > 0 else "rm"
-    panel.text(at, f"{here[1]:.0f} mm", ESTIMATED, anchor=anchor, size=13)
+def _diamond(X: float, Z: float, sigma: float) -> Array:
+    """Return the corners of where a point may lie, whose columns may be off by σ/2 each."""
+    left, right = columns(X, Z)
+    by = sigma / 2 * np.array([[1, 1, -1, -1], [-1, 1, 1, -1]])
+    return triangulated(left + by[0], right + by[1])
+
+
+def _diamonds(paper: Paper, Z: float, sigma: float) -> Panel:
+    """Draw where points between the cameras may lie, so many times larger, and 1 % of the depth."""
+    middle, title = _BASE / 2, f"where it may lie, {_TIMES} times as large; grey: 1 %"
+    panel = paper.panel((340, 390), (-130, 390), (5950, -520), title)
+    panel.segments([[[x, 0], [middle, Z]] for x in (0, _BASE)], CAMERA, 1)
+    depths = [*((z, MUTED) for z in _DEPTHS if abs(z - Z) > 700), (Z, ESTIMATED)]
+    for z, ink in depths:
+        far, near = z * (1 + _TIMES / 100), z * (1 - _TIMES / 100)
+        ends = middle + 26 * np.array([-1, 1, 1, -1])
+        panel.polygons([np.column_stack([ends, [far, far, near, near]])], _GREY)
+        panel.text([-110, z], f"{z / 1000:g} m", ink, size=13)
+        error = z**2 / (_ALPHA * _BASE) * sigma
+        panel.text([_BASE + 30, z], f"± {error:.0f} mm", ink, size=13)
+    for z, ink in depths:
+        at = np.array([middle, z])
+        pale = ESTIMATED if ink == ESTIMATED else mixed(ESTIMATED, "#FFFFFF", 0.45)
+        panel.polygons([at + _TIMES * (_diamond(middle, z, sigma) - at)], pale)
+    panel.mark(np.array([[0, 0], [_BASE, 0]]), "camera", 8)
     return panel
 
 
@@ -103,6 +111,4 @@ def _sentence(left: float, right: float, sigma: float) -> str:
     d = left - right
     near, far = (_ALPHA * _BASE / (d + by) for by in (sigma, -sigma))
     said = f"d = {d:.1f} px, so Z = α b / d = {_ALPHA * _BASE / d:.0f} mm."
-    if not sigma:
-        return said
     return f"{said} Were d wrong by {sigma:g} px, it would be {near:.0f} or {far:.0f} mm."

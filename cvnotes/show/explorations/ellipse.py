@@ -11,8 +11,8 @@ from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED
 _FULL = np.array([[1.6, 0.9], [0.5, 1.1]])
 _ASIDE = np.array([[1, -1.7], [1.7, 1]]) / 2  # 60°: off a row of D along v
 _PARALLEL = np.array([[1.6, 0.8], [0.8, 0.4]])  # its second row is half of the first
-_HIGH = 240  # px, of a panel
-_UNIT = 84  # px, of circle and ellipse alike: so one sees by how much D stretches
+_HIGH = 288  # px, of a panel
+_UNIT = 100  # px, of circle and ellipse alike: so one sees by how much D stretches
 _CORNER = 0.13  # side of the square that marks a right angle, in units
 _UP = np.array([1, -1])  # y goes up here, and down on a panel
 
@@ -23,10 +23,7 @@ def ellipse_model() -> Model:
         Setting("angle", "direction of h (°)", 0, 180, 1, 70, "h has the length 1"),
         Setting("parallel", "rows parallel", 0, 1, 0.05, 0, "1: the second row says nothing new"),
     )
-    about = (
-        "A vector h on the circle of all that have the length 1; D h on an ellipse; and how long "
-        "D h is, direction by direction."
-    )
+    about = "A vector h on the circle of all that have the length 1, and D h on an ellipse."
 
     def pulled(_: Values, at: Array) -> Values:
         return {"angle": float(np.degrees(np.arctan2(-at[1], at[0])) % 180)}
@@ -54,20 +51,12 @@ def _draw(paper: Paper, values: Values) -> Drawing:
         left.text(1.08 * row * _UP, name, MUTED, anchor="mm", size=12)
     left.grip("h", "the vector h", h * _UP, 4)
     right = _round(paper, ("where D takes them", (-1.95, 2.3)), (D, Vt, h), "D ")
-    lengths = paper.panel((206, _HIGH), (-8, 198), (2.4, -0.3), "length of D h, by direction (°)")
-    lengths.ticks(x=(0, 45, 90, 135, 180), y=(0, 1, 2))
-    all_h = circle(361)[:181]
-    lengths.line(np.column_stack([np.arange(181), np.linalg.norm(all_h @ D.T, axis=1)]), MUTED, 2)
-    for v, sigma, colour in zip(Vt, s, (LENS, ESTIMATED), strict=True):
-        at = np.degrees(np.arctan2(v[1], v[0]))
-        lengths.line([[at, 0], [at, sigma]], colour, 2.5)
     long = float(np.linalg.norm(D @ h))
-    lengths.mark([values["angle"], long], "ideal", 8)
     said = f"The length of D h is {long:.2f}. "
     if s[1] < 1e-9:
-        return Drawing(paper.join((left, right, lengths)), f"{said}For v₂ it is 0: D v₂ = 0.")
+        return Drawing(paper.join((left, right)), f"{said}For v₂ it is 0: D v₂ = 0.")
     return Drawing(
-        paper.join((left, right, lengths)),
+        paper.join((left, right)),
         f"{said}The longest is σ₁ = {s[0]:.2f}, the shortest σ₂ = {s[1]:.2f}.",
     )
 

@@ -1,4 +1,4 @@
-"""Explore the height of the eye: the horizon stays, and cuts everything as high as the eye is."""
+"""Explore the horizon: it stays as the eye rises, and is pulled, which turns the camera."""
 
 import numpy as np
 import numpy.typing as npt
@@ -7,10 +7,10 @@ from cvnotes.base import Array
 from cvnotes.camera import Camera, intrinsics, pose, rotation_from_angles
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Panel, Paper
-from cvnotes.show.style import CAMERA, IDEAL, MUTED, mixed
+from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, MUTED, mixed
 
-SIZE, _A = (640, 480), intrinsics(800, 804, 325, 238)
-_R = rotation_from_angles(0.06, 0.05, 0.14)  # of the chapter's tilted camera
+_SIZE, _FOCAL, _MIDDLE = (640, 480), 800.0, np.array([325.0, 238.0])  # px; the pixels are square
+_A, _YAW = intrinsics(_FOCAL, _FOCAL, *_MIDDLE), 0.05  # rad
 _ROW, _TALL, _START = -4.0, 6.0, 1.95  # m: where the poles stand, their height, the eye's at first
 _POLES, _MARKED = np.arange(15.0, 490, 25), 4  # m ahead; how many are marked
 _HIGH, _GRASS, _BALLAST, _WOOD = "#9FBFE4", "#7A9155", "#8F877E", "#5C4A3D"
@@ -23,32 +23,48 @@ def eye_model() -> Model:
     """Make the model of the chapter's railway, seen by an eye that rises."""
     settings = (
         Setting("height", "eye (m)", 0.5, 8, 0.05, _START, "how high it is above the grass"),
+        Setting("tilt", "tilt (°)", 0, 12, 0.1, 3.4, "how far the axis leads down"),
+        Setting("roll", "roll (°)", -25, 25, 0.1, 7.8, "how far the camera is turned about it"),
     )
     about = (
-        "A railway with poles, seen by a camera that is tilted and rolled, and its horizon; beside "
-        "it the same from the side. Once the camera moves, green marks on four poles are as high."
+        "A railway with poles, seen by a camera that is tilted and rolled, its horizon, and the "
+        "way from the principal point c straight to it; beside it the same from the side. Once the "
+        "eye rises, green marks on four poles are as high."
     )
 
     def draw(paper: Paper, values: Values) -> Drawing:
-        height = values["height"]
-        picture = paper.picture_panel((440, 330), SIZE, "what the camera sees")
-        _draw_picture(picture, height)
+        height, tilt, roll = values["height"], *np.radians([values["tilt"], values["roll"]])
+        picture = paper.picture_panel((440, 330), _SIZE, "what the camera sees: pull the horizon")
+        R = rotation_from_angles(0, 0, roll) @ rotation_from_angles(tilt, 0, 0)
+        camera = _draw_railway(picture, R @ rotation_from_angles(0, _YAW, 0), height)
+        if _marked(height):
+            picture.mark(camera.project([[_ROW, -height, z] for z in _POLES[:_MARKED]]), "world", 5)
+        _draw_way(picture, tilt, roll)
         side = paper.panel(
-            (330, 330), (-18, 100), (8.6, -0.8), "from the side (m), heights stretched"
+            (330, 330),
+            (-18, 100),
+            (8.6, -0.8),
+            "from the side (m), heights stretched: pull the eye",
         )
         _draw_side(side, height)
-        return Drawing(paper.join((picture, side)), _sentence(height))
+        return Drawing(paper.join((picture, side)), _sentence(height, values["tilt"]))
 
     def raised(_: Values, at: Array) -> Values:
         return {"height": float(at[1])}
 
-    return Model("eye", about, settings, draw, {"height": raised})
+    return Model("eye", about, settings, draw, {"height": raised, "horizon": _pulled})
 
 
-def draw_railway(panel: Panel, A: Array, R: Array, height: float) -> Camera:
+def _pulled(_: Values, at: Array) -> Values:
+    u, v = at - _MIDDLE
+    tilt, roll = np.arctan(np.hypot(u, v) / _FOCAL), np.arctan2(u, -v)
+    return {"tilt": float(np.degrees(tilt)), "roll": float(np.degrees(roll))}
+
+
+def _draw_railway(panel: Panel, R: Array, height: float) -> Camera:
     """Draw the railway as a camera sees it that is so high above the grass, and its horizon."""
-    camera = Camera(A, pose(R, R @ [0, height, 0]))  # the grass is the plane y = 0
-    a, b, c = np.linalg.inv(A).T @ R @ [0, 1, 0]
+    camera = Camera(_A, pose(R, R @ [0, height, 0]))  # the grass is the plane y = 0
+    a, b, c = np.linalg.inv(_A).T @ R @ [0, 1, 0]
     skyline = np.array([[u, -(a * u + c) / b] for u in (-20.0, 660.0)])
 
     def fill(x: npt.ArrayLike, y: npt.ArrayLike, z: npt.ArrayLike, ink: str) -> None:
@@ -70,21 +86,27 @@ def draw_railway(panel: Panel, A: Array, R: Array, height: float) -> Camera:
     for z in _POLES[::-1]:
         aside = _ROW + np.array([-0.09, 0.09, 0.09, -0.09])
         fill(aside, [0, 0, -_TALL, -_TALL], [z] * 4, _WOOD)
-    panel.line(skyline, IDEAL, 1.5)
+    panel.line(skyline, IDEAL, 2)
     (left, _), (right, far) = skyline
-    end, anchor = (right - 30, "rm") if 40 < far < SIZE[1] else (left + 30, "lm")
+    end, anchor = (right - 30, "rm") if 40 < far < _SIZE[1] else (left + 30, "lm")
     panel.text([end, -(a * end + c) / b - 24], "horizon", IDEAL, anchor=anchor)
     return camera
 
 
-def _draw_picture(panel: Panel, height: float) -> None:
-    camera = draw_railway(panel, _A, _R, height)
-    if _marked(height):
-        panel.mark(camera.project([[_ROW, -height, z] for z in _POLES[:_MARKED]]), "world", 4.5)
+def _draw_way(panel: Panel, tilt: float, roll: float) -> None:
+    """Draw the way from c straight to the horizon."""
+    near = _MIDDLE + _FOCAL * np.tan(tilt) * np.array([np.sin(roll), -np.cos(roll)])
+    panel.line([_MIDDLE, near], ESTIMATED, 3)
+    panel.mark(_MIDDLE, "ideal", 8)
+    panel.text(_MIDDLE + [16, 18], "c", IDEAL, size=16)
+    if np.tan(tilt) > 0.03:
+        panel.text((_MIDDLE + near) / 2 - [14, 0], "f tan t", ESTIMATED, anchor="rm", size=15)
+    panel.grip("horizon", "the point of the horizon that is nearest to c", near, 2)
 
 
 def _draw_side(panel: Panel, height: float) -> None:
-    panel.polygons([[[-20, 0], [120, 0], [120, -9], [-20, -9]]], "#DDDACF")
+    for low, high, ink in ((0, 9, _AIR), (-9, 0, _GRASS)):
+        panel.polygons([[[-20, low], [120, low], [120, high], [-20, high]]], ink)
     panel.ticks(x=(0, 25, 50, 75), y=(2, 4, 6, 8))
     poles = _POLES[:_MARKED]
     panel.segments([[[z, 0], [z, _TALL]] for z in poles], _WOOD, 2)
@@ -101,11 +123,13 @@ def _marked(height: float) -> bool:
     return height <= _TALL and height != _START  # where they will be is asked
 
 
-def _sentence(height: float) -> str:
+def _sentence(height: float, t: float) -> str:
     said = f"The eye is {height:.2f} m above the grass"
     if height == _START:  # what the horizon does is asked
-        return f"{said}. The poles are {_TALL:g} m high."
-    said += ": the horizon"
-    if height > _TALL:
-        return f"{said} passes over all poles, for they are {_TALL:g} m high."
-    return f"{said} cuts every pole {height:.2f} m above its foot."
+        said += f". The poles are {_TALL:g} m high."
+    elif height > _TALL:
+        said += f": the horizon passes over all poles, for they are {_TALL:g} m high."
+    else:
+        said += f": the horizon cuts every pole {height:.2f} m above its foot."
+    away = f"{_FOCAL:.0f} · tan {t:.1f}° = {_FOCAL * np.tan(np.radians(t)):.0f} px"
+    return f"{said} From c to it: f tan t = {away}."

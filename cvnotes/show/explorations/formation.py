@@ -1,13 +1,13 @@
 """Explore the formation of an image: one box, before and after each step from world to pixels."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
 
 from cvnotes.base import Array
-from cvnotes.camera import Camera, Lens, intrinsics, inverse, look_at, move, xy_from_px
+from cvnotes.camera import Camera, intrinsics, inverse, look_at, move, xy_from_px
 from cvnotes.pictures.meshes import box, outlined
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.moved import part_of
@@ -45,7 +45,6 @@ def formation_model() -> Model:
         Setting("turn", "turn (°)", -80, 80, 0.5, -30, "of the camera on the spot, to the right"),
         Setting("alpha", "α (px)", 600, 1200, 10, 800, "the focal length"),
     )
-    lens = Setting("k1", "k₁ of the lens", -0.3, 0.3, 0.01, 0, "how strongly the lens bends")
     about = (
         "A box on a floor, four times: from above in the world, with a camera; from above in the "
         "camera's frame; divided by z, on the plane z = 1; and in the picture. One corner of the "
@@ -59,7 +58,7 @@ def formation_model() -> Model:
         "camera": lambda _, at: {"X": float(at[0]), "Z": float(at[1])},
         "line of sight": looked,
     }
-    return Model("formation", about, settings, _draw, drags, (lens,))
+    return Model("formation", about, settings, _draw, drags)
 
 
 def camera_of(values: Values) -> Camera:
@@ -68,12 +67,11 @@ def camera_of(values: Values) -> Camera:
     eye = np.array([values["X"], _EYE, values["Z"]])
     ahead = [np.sin(turn), np.tan(down), np.cos(turn)]
     A = intrinsics(values["alpha"], 1.005 * values["alpha"], 325, 238)
-    return Camera(A, look_at(eye, eye + ahead), Lens(k=(values.get("k1", 0.0),)))
+    return Camera(A, look_at(eye, eye + ahead))
 
 
 def _draw(paper: Paper, values: Values) -> Drawing:
     camera, W, way = camera_of(values), _CORNER, values["way"]
-    bent = not camera.lens.is_ideal
     (x0, x1), (y0, y1) = _ABOVE
     world = paper.panel(_SIZE, (x0, x1), (y0, y1), "the world, from above: pull camera and plus")
     draw_above(world, lambda W: W[..., [0, 2]], camera, W)
@@ -81,9 +79,8 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     _take_hold(world, camera)
     world.line(np.array([camera.centre, W])[:, [0, 2]], ESTIMATED, 1.2)
     frame, at = _draw_frame(paper, camera, W, min(way, 2))
-    steps = "2. ÷ z, 3. lens" if bent else "2. ÷ z"
-    plane = paper.panel(_SIZE, (-0.64, 0.64), (-0.48, 0.48), f"{steps}: the plane z = 1")
-    picture = paper.picture_panel(_SIZE, camera.size, f"{3 + bent}. A: the picture")
+    plane = paper.panel(_SIZE, (-0.64, 0.64), (-0.48, 0.48), "2. ÷ z: the plane z = 1")
+    picture = paper.picture_panel(_SIZE, camera.size, "3. A: the picture")
     scene = Scene.of(camera, W)
     draw_seen(plane, scene, lambda xy: xy)
     alpha, centre = np.diag(camera.A)[:2], camera.A[:2, 2]
@@ -91,25 +88,17 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     _draw_border(plane, camera)
     M = move(camera.G, W)
     xy = M[:2] / M[2] if M[2] > 0 else np.full(2, np.nan)
-    m, on_plane = camera.project(W), _sensed(camera, W)
-    if bent:
-        for face, _ in _unhidden(Scene.of(Camera(camera.A, camera.G), W).faces):
-            plane.line(face, "#FFFFFF", 2.4)
-            plane.line(face, MUTED, 1, dash=3)
-        plane.line([xy, on_plane], ESTIMATED, 2)
-        plane.mark(xy, "ideal", 5)
-    said = written(W, 0), written(M, 0), written(on_plane, 3), written(m, 1)
-    on_the_way = {0.0: said[0], 1.0: said[1], 2.0: written(xy, 3)[:-1] + ", 1)"}
+    m = camera.project(W)
+    said = written(W, 0), written(M, 0), written(xy, 3), written(m, 1)
+    on_the_way = {0.0: said[0], 1.0: said[1], 2.0: said[2][:-1] + ", 1)"}
     follow(world, W[[0, 2]], said[0], up=-16)  # below the X axis
     follow(frame, at, on_the_way.get(min(way, 2), ""), up=16 if way >= 2 else 0)
-    follow(plane, on_plane, said[2], over=True)
+    follow(plane, xy, said[2], over=True)
     follow(picture, m, said[3], over=True)
     for panel, step in ((plane, 2), (picture, 3)):
         if way < step:
             _make_pale(panel, min(step - way, 1), f"after step {step}")
-    return Drawing(
-        paper.join((world, frame), (plane, picture)), _sentence(said, M, xy, m, bent, way)
-    )
+    return Drawing(paper.join((world, frame), (plane, picture)), _sentence(said, m, way))
 
 
 def _make_pale(panel: Panel, part: float, words: str) -> None:
@@ -157,23 +146,21 @@ def _draw_frame(paper: Paper, camera: Camera, W: Array, way: float) -> tuple[Pan
     return frame, on_the_way(W)
 
 
-def _sentence(said: tuple[str, ...], M: Array, xy: Array, m: Array, bent: bool, way: float) -> str:
+def _sentence(said: tuple[str, ...], m: Array, way: float) -> str:
     if np.isnan(m).any():
-        why = "behind the camera" if M[2] <= 0 else "farther aside than the lens shows anything"
-        return f"W = {said[0]} mm. G makes {said[1]} of it, {why}: it has no image."
-    lens = f"the lens {said[2]}, " if bent else ""
+        return f"W = {said[0]} mm. G makes {said[1]} of it, behind the camera: it has no image."
     inside = ((m >= -0.5) & (m <= [639.5, 479.5])).all()
     told = (
         f"W = {said[0]} mm",
         f". G makes {said[1]} of it, in the camera's frame",
-        f"; the division by z ({xy[0]:.3f}, {xy[1]:.3f})",
-        f", {lens}and A the pixel {said[3]}{'' if inside else ', outside of the picture'}",
+        f"; the division by z {said[2]}",
+        f", and A the pixel {said[3]}{'' if inside else ', outside of the picture'}",
     )
     return "".join(told[: 1 + int(way)]) + "."
 
 
 class Scene(NamedTuple):
-    """What stands before a camera, as polygons on z = 1, behind its lens."""
+    """What stands before a camera, as polygons on z = 1."""
 
     tiles: tuple[list[Array], list[Array]]
     shadow: list[Array]
@@ -185,16 +172,14 @@ class Scene(NamedTuple):
         """Return what a camera sees, the box with this corner."""
         faces = faces_of(corner)
         light, dark = (_on_plane(camera, tiles) for tiles in _tiles())
-        horizon = _sensed(camera, _HORIZON)
+        far = move(camera.G, _HORIZON)
+        horizon = (far[:, :2] / far[:, 2:])[far[:, 2] > _NEAR]
         shadow = _on_plane(camera, faces - faces[..., 1:2] * _LIGHT)
         return cls((light, dark), shadow, _on_plane(camera, faces), horizon)
 
 
 def _on_plane(camera: Camera, corners: Array) -> list[Array]:
-    """Bring polygons (n, k, 3) of the world onto z = 1, those parts that lie before the camera.
-
-    What the lens shows nowhere goes to the rim of what it shows, beyond every picture.
-    """
+    """Bring polygons (n, k, 3) of the world onto z = 1, those parts that lie before the camera."""
     M = move(camera.G, corners)
     parts = list(outlined(M))
     for i in np.flatnonzero((M[..., 2] < _NEAR).any(axis=1)):
@@ -202,14 +187,8 @@ def _on_plane(camera: Camera, corners: Array) -> list[Array]:
     ends = np.cumsum([len(part) for part in parts])[:-1]
     x, y, z = np.concatenate(parts).T
     xy = np.stack([x, y], axis=1) / z[:, None]
-    most = min(0.999 * camera.lens.max_radius, _WIDEST)
-    xy = xy * np.minimum(1, most / np.linalg.norm(xy, axis=1).clip(1e-12))[:, None]
-    return np.split(camera.lens.distort(xy), ends)
-
-
-def _sensed(camera: Camera, W: Array) -> Array:
-    """Return where (..., 2) on z = 1 points come to lie behind the lens; NaN without an image."""
-    return np.asarray((camera.project(W) - camera.A[:2, 2]) / np.diag(camera.A)[:2])
+    xy = xy * np.minimum(1, _WIDEST / np.linalg.norm(xy, axis=1).clip(1e-12))[:, None]
+    return np.split(xy, ends)
 
 
 def faces_of(corner: Array) -> Array:
@@ -259,18 +238,12 @@ def draw_seen(panel: Panel, scene: Scene, place: Callable[[Array], Array]) -> No
 
 
 def draw_faces(panel: Panel, faces: Sequence[Array], turn: int = 1) -> None:
-    """Draw the faces that nothing hides."""
-    for face, shade in _unhidden(faces, turn):
-        panel.polygons(face[None], hexed(255 * shade * np.array(rgb(WORLD))))
-        panel.line(face[[*range(len(face)), 0]], "#FFFFFF", 0.8)
-
-
-def _unhidden(faces: Sequence[Array], turn: int = 1) -> Iterator[tuple[Array, float]]:
-    """Give those faces (n, 2) of a box that go round one way, with their shades."""
+    """Draw those faces (n, 2) of a box that go round one way: the others are hidden."""
     for face, shade in zip(faces, _SHADES, strict=True):
         u, v = face.T
         if turn * np.sum(u * np.roll(v, -1) - v * np.roll(u, -1)) > 0:
-            yield face, shade
+            panel.polygons(face[None], hexed(255 * shade * np.array(rgb(WORLD))))
+            panel.line(face[[*range(len(face)), 0]], "#FFFFFF", 0.8)
 
 
 def draw_axes(panel: Panel, length: float, colour: str, names: str, seen: Seen) -> None:
@@ -291,7 +264,7 @@ def _take_hold(world: Panel, camera: Camera) -> None:
 
 
 def _draw_border(plane: Panel, camera: Camera) -> None:
-    """Draw what of the plane z = 1 the sensor covers, which the lens does not change."""
+    """Draw what of the plane z = 1 the sensor covers."""
     corners = np.array([[0, 0], [1, 0], [1, 1], [0, 1], [0, 0]]) * camera.size - 0.5
     border = xy_from_px(camera.A, corners)
     plane.line(border, CAMERA, 2)

@@ -11,7 +11,7 @@ from cvnotes.pictures import course, rails, render_scene
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Drawn, Panel, Paper
 from cvnotes.show.explorations.strokes import circle
-from cvnotes.show.style import CAMERA, IDEAL, MUTED, WORLD, mixed
+from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, MUTED, WORLD, mixed
 
 _CAMERA, _DOWN, _HALFWAY, _CELL = Camera(course.camera().A), 1.6, 20.0, 4.0  # m
 _MAP, _VIEW, _FINER = (330, 330), (440, 330), 1.375  # px; the photograph is finer than _CAMERA's
@@ -20,7 +20,7 @@ _DISC, _DISC_AT = 0.16, np.array([-0.38, 0.19])  # the whole map, small, beside 
 _SIDE = 21  # degrees to either side, to which the cell is pulled
 _SEEN = -22.1, 21.5  # degrees that the picture shows, from its left border to its right one
 _NAMED = np.radians([-20, 0, 20])  # directions whose degrees are written there
-_ROWS = ((10, 368), (100, 264), (1000, 219), (np.inf, 194))  # m ahead; the row of its quadruple
+_TOLD = np.array([610, 70])  # px of the picture, in the sky: where the quadruple ends
 _GRASS, _UNSEEN, _YELLOW = "#E6EFDF", "#F4F6F1", "#F0E442"
 _MEADOW, _PALE = "#7C8A5C", "#A6F0D8"  # grass of the photograph, and the grid upon it
 # Once round a cell of side 1, from the left of its near edge: bent on the map, so in short steps.
@@ -37,7 +37,7 @@ def horizon_model() -> Model:
     about = (
         "The ground from above with a grid of 4 m, far distances pressed together, so that the "
         "line at infinity is a rim; and the same grid in the picture of a camera, where it is the "
-        "horizon. One cell is yellow in both; four places straight ahead are told as quadruples."
+        "horizon. One cell is yellow in both; in the sky its quadruple, the last number orange."
     )
 
     def on_map(_: Values, at: Array) -> Values:
@@ -99,6 +99,7 @@ def _draw(paper: Paper, values: Values) -> Drawing:
             panel.mark(at, "ideal", 9)
         panel.grip(name, f"the cell, in the {name}", at, 2)
     _on_disc(plan, part * way, part == 1)
+    _tell(view, place)
     return Drawing(paper.join((plan, view)), _sentence(place, high))
 
 
@@ -110,6 +111,16 @@ def _on_disc(plan: Panel, at: Array, at_the_rim: bool) -> None:
         return
     for size, ink in ((3.6, IDEAL), (2.4, _YELLOW)):
         plan.polygons([small[0] + size * plan.pixel * circle(17)], ink)
+
+
+def _tell(view: Panel, place: Array) -> None:
+    """Write the cell's quadruple into the sky, large, its last number orange, and what that is."""
+    *others, last = quadruple(place).strip("[]").replace("-", "−").split()
+    view.text(_TOLD, "]", IDEAL, anchor="rm", size=24)
+    view.text(_TOLD - [14, 0], last, ESTIMATED, anchor="rm", size=24)
+    view.text(_TOLD - [146, 0], f"[{'  '.join(others)}", IDEAL, anchor="rm", size=24)
+    said = f"1 : {place[1] / place[2]:.0f} m" if place[2] else "at infinity"
+    view.text(_TOLD + [-14, 46], said, ESTIMATED, anchor="rm", size=15)
 
 
 def _lifted(ground: Array) -> Array:
@@ -168,12 +179,6 @@ def _picture(sharpness: int) -> Drawn:
     horizon = seen(np.stack([np.sin(_NAMED), np.cos(_NAMED), 0 * _NAMED], axis=1))
     panel.line(horizon + [[-40, 0], [0, 0], [40, 0]], IDEAL, 3)
     _name(panel, horizon - [0, 30])
-    for away, row in _ROWS:
-        place = np.array([0, 1, 1 / away])
-        name = {1000: "1 km", np.inf: "∞"}.get(away, f"{away:g} m")
-        v = seen(place)[1]
-        panel.line([[578, row], [584, row], [592, v], [632, v]], IDEAL, 1)
-        panel.text([574, row], f"{name}  {quadruple(place)}", IDEAL, anchor="rm", size=13)
     page = panel.drawn().copy()
     for z in range(15, 150, 25):  # the poles stand before the lines
         corners = _CAMERA.project([[-4.09, -4.05, z - 0.09], [-3.91, 1.95, z + 0.09]])

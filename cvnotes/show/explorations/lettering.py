@@ -18,7 +18,7 @@ LETTERS = (
     + "ĥ–—…′″√∞≈≤≥≠±−·×←→↑↓"
 )
 # Larger than the type's own, to be read at a drawing's size; and it has neither ᵥ nor ᵀ.
-SMALL = str.maketrans("₀₁₂₃₄ᵤᵥ⁻¹²³ᵀ", "01234uv−123T")
+SMALL = str.maketrans("₀₁₂₃₄₅₆₇₈₉ᵤᵥ⁻¹²³ᵀ", "0123456789uv−123T")
 _SMALLER = 0.75  # than the letter before it
 
 
@@ -70,7 +70,7 @@ def _runs(words: str, size: int) -> list[tuple[tuple[float, float], str, ImageFo
 
 def _lower(letter: str) -> float:
     """Return by how much, in its size, a letter stands below the line: an exponent above it."""
-    return 0.2 if letter in "₀₁₂₃₄ᵤᵥ" else -0.3 if letter in "⁻¹²³ᵀ" else 0.0
+    return 0.2 if letter in "₀₁₂₃₄₅₆₇₈₉ᵤᵥ" else -0.3 if letter in "⁻¹²³ᵀ" else 0.0
 
 
 @lru_cache(maxsize=16)

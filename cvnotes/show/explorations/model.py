@@ -102,8 +102,6 @@ class Model:
     drags : mapping
         What a hand that takes hold of the picture changes, by the name of the grip: (values, where
         it is pulled to, in its panel's coordinates) → changed values.
-    extras : tuple of Setting
-        What can be moved too, if a value is given for it at the start; `draw` may miss them.
 
     Examples
     --------
@@ -122,18 +120,15 @@ class Model:
     settings: tuple[Setting, ...]
     draw: Callable[[Paper, Values], Drawing]
     drags: Mapping[str, Drag] = field(default_factory=dict)
-    extras: tuple[Setting, ...] = ()
 
     def values(self, **given: float) -> dict[str, float]:
         """Fill up given values with the starting ones; refuse what no slider could say."""
         values = {setting.name: setting.value for setting in self.settings}
-        extras = [s for s in self.extras if s.name in given]
-        known = [*values, *(s.name for s in extras)]
         for name, value in given.items():
-            if name not in known:
-                raise CvnotesError(f"{self.name}: {name!r} is none of {', '.join(known)}")
+            if name not in values:
+                raise CvnotesError(f"{self.name}: {name!r} is none of {', '.join(values)}")
             values[name] = value
-        for s in (*self.settings, *extras):
+        for s in self.settings:
             if not s.low <= values[s.name] <= s.high:
                 raise CvnotesError(
                     f"{s.name}: expected a number from {s.low:g} to {s.high:g}, "
@@ -142,12 +137,10 @@ class Model:
         return values
 
     def starting(self, **values: float) -> "Model":
-        """Return the same model with other values at the start, and the extras among them."""
+        """Return the same model with other values at the start."""
         start = self.values(**values)
-        settings = (*self.settings, *self.extras)
-        moved = tuple(s._replace(value=start[s.name]) for s in settings if s.name in start)
-        extras = tuple(s for s in self.extras if s.name not in start)
-        return replace(self, settings=moved, extras=extras)
+        moved = tuple(s._replace(value=start[s.name]) for s in self.settings)
+        return replace(self, settings=moved)
 
     def drawing(self, **values: float) -> Drawing:
         """Return picture and sentence; where there is no answer, the sentence says why."""

@@ -17,16 +17,15 @@ from cvnotes.show.explorations.boards import draw_net, draw_squares
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Panel, Paper
 from cvnotes.show.explorations.strokes import circle
-from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED, WORLD, mixed
+from cvnotes.show.style import COLOURS, ESTIMATED, FAINT, IDEAL, LENS, MUTED, mixed
 
 _BOARD, _NOISE, _TIMES = course.board(), 0.5, 10  # px; shifts are drawn so many times
 _FARTHEST = 540  # mm, of the origin from the board's middle
 _ALONG = np.array([-0.741, -0.6715])  # that way on the board: up and to the left, of length 1
-_WIDE, _NARROW, _HALF = (754, 300), (374, 190), (374, 210)  # px
-_AWAY, _HIGH = (2100.0, 3750.0), -500.0  # mm of depth; of height, the upper end of the picture
+_WIDE, _NARROW, _HALF = (754, 300), (374, 230), (374, 210)  # px
+_AWAY, _HIGH = (2100.0, 3750.0), -530.0  # mm of depth; of height, the upper end of the picture
 _SEEN = (190.0, 269.0), (161.8, 206.16)  # px, u and v
-_BILL = 0.6  # px², as long as a bar can be
-_PALE, _GREY = "#E4E4E4", "#A9A9A9"
+_PALE, _SIDE = "#E4E4E4", "#F3F5F6"
 
 
 def origin_model() -> Model:
@@ -36,10 +35,9 @@ def origin_model() -> Model:
                 "along the board, upwards and to the left"),
     )  # fmt: skip
     about = (
-        "A far board from the side: where the board is, and where the plain DLT "
-        "believes it: nearer, but for the origin of its coordinates. Below, two nets through its "
-        "corners, their shifts enlarged: of the plain DLT, and of the normalised one; and what "
-        "the misses cost, of the true homography and of the plain DLT's."
+        "A far board from the side, over a scale of depths: where it is, and where the plain DLT "
+        "believes it, swung about the origin of its coordinates. Below, two nets over its "
+        "corners, their shifts enlarged: of the plain DLT, and of the normalised one."
     )
 
     def pulled(_: Values, at: Array) -> Values:
@@ -116,81 +114,68 @@ def believed(at: Array) -> tuple[Array, Array, Array]:
     return origin, np.array(true), origin[2] * seen @ np.linalg.inv(far_camera().A).T
 
 
-def bill(at: Array) -> Array:
-    """Return the squares (2, 2) of misses times depths, of noise and of the fit, mean.
-
-    In px², for the board as it is and as the plain DLT has it; the origin has the depth 1.
-    """
-    depths = np.array([board[:, 2] for board in believed(at)[1:]]) / believed(at)[0][2]
-    off = apply(plain(at), corners()[0] - at) - corners()[1]
-    misses = np.stack([0 * depths[0], np.hypot(*off.T)])
-    squares = 2 * (_NOISE * depths) ** 2, (misses * depths) ** 2
-    return np.asarray(np.mean(squares, axis=-1).T)
-
-
 def _draw(paper: Paper, values: Values) -> Drawing:
     at = place(values["out"])
-    net, costs = apply(plain(at), corners()[0] - at), bill(at)
+    net, cured = apply(plain(at), corners()[0] - at), normalised()
     side, ratios = _side(paper, at)
-    (noise, _), (less, fit) = costs
     sentence = (
         f"The origin is {abs(values['out']):.0f} mm from the board's middle, which the plain DLT "
         f"believes {ratios[1]:.2f} times as far away as the origin (true: {ratios[0]:.2f}). Its "
-        f"net is {rms(net):.2f} px off, the normalised one's {rms(normalised()):.2f} px. It pays "
-        f"{less:.2f} for noise and {fit:.2f} for the fit; the true one would pay {noise:.2f}."
+        f"net is {rms(net):.2f} px off, the normalised one's {rms(cured):.2f} px."
     )
-    return Drawing(paper.join((side,), (_nets(paper, net), _bars(paper, costs))), sentence)
+    nets = _net(paper, net, "the DLT", LENS), _net(paper, cured, "points moved first", ESTIMATED)
+    return Drawing(paper.join((side,), nets), sentence)
 
 
 def _side(paper: Paper, at: Array) -> tuple[Panel, list[float]]:
     """Draw the board from the side; return with it how far its middle is, in the origin's depth."""
     width, height = _NARROW if paper.narrow else _WIDE
-    high = _HIGH - 45 * paper.narrow
-    low = high + (_AWAY[1] - _AWAY[0]) * height / width
-    title = "the far board from the side, and depths"
-    panel = paper.panel((width, height), _AWAY, (high, low), title)
+    low = _HIGH + (_AWAY[1] - _AWAY[0]) * height / width
+    panel = paper.panel(
+        (width, height),
+        _AWAY,
+        (_HIGH, low),
+        "from the side; below, the depth in that of the origin",
+    )
     hinge, *boards = (one[..., [2, 1]] for one in believed(at))
     middles = [board.mean(axis=0) for board in boards]
+    floor = low - 36 * panel.pixel  # where the scale of depths begins
+    panel.polygons([[[0, _HIGH], [9e3, _HIGH], [9e3, floor], [0, floor]]], _SIDE)
+    for tenth in range(5, 13):
+        depth = tenth / 10 * hinge[0]
+        if not _AWAY[0] + 14 * panel.pixel < depth < _AWAY[1] - 14 * panel.pixel:
+            continue
+        panel.line([[depth, floor], [depth, floor + 6 * panel.pixel]], MUTED, 1)
+        panel.text([depth, floor + 18 * panel.pixel], f"{tenth / 10:.1f}", MUTED, anchor="mm")
+    panel.line([[0, 0], middles[0]], FAINT, 1)
     panel.polygons([[hinge, *middles]], mixed("#FFFFFF", LENS, 0.15))
-    panel.line([[0, 0], middles[0]], MUTED, 0.8)
-    ratios = [float(middle[0] / hinge[0]) for middle in middles]
-    rows = zip(boards, middles, ratios, (IDEAL, LENS), ("true", "blue"), (28, 11), strict=True)
-    for board, middle, ratio, colour, name, up in rows:
+    named: list[float] = []
+    points = zip((hinge, *middles), ("world", "ideal", "lens"), strict=True)
+    for (x, y), what in points:
+        panel.line([[x, y], [x, floor]], COLOURS[what], 1, dash=3)
+        panel.mark([x, floor], what, 5)
+        if all(abs(x - other) > 46 * panel.pixel for other in named):
+            words = {"world": "origin", "ideal": "true", "lens": "the DLT's"}[what]
+            side, anchor = (-6, "rm") if what == "lens" else (6, "lm")
+            beside = [x + side * panel.pixel, floor - 12 * panel.pixel]
+            panel.text(beside, words, COLOURS[what], anchor=anchor, size=13, rim=_SIDE)
+            named.append(x)
+    for board, middle, colour in zip(boards, middles, (IDEAL, LENS), strict=True):
         panel.line([hinge, middle], colour, 1.4, dash=4)
+        draw_squares(panel, board, _BOARD, colour)
         draw_net(panel, board, _BOARD, colour, 1)
-        below = [middle[0], low - up * panel.pixel]
-        panel.text(below, f"{name} {ratio:.2f}", colour, anchor="mm")
-    broken = np.array([_AWAY[0], middles[0][1] * _AWAY[0] / middles[0][0]])
-    panel.text(broken + panel.pixel * np.array([8, 14]), "← camera, 3 m", MUTED, anchor="lm")
+    ray = middles[0][1] * _AWAY[0] / middles[0][0]
+    panel.text([_AWAY[0] + 8 * panel.pixel, ray + 16 * panel.pixel], "← camera", rim=_SIDE)
     panel.mark(hinge, "world", 6)
-    panel.text([hinge[0], low - 45 * panel.pixel], "origin 1.00", WORLD, anchor="mm")
     panel.grip("hinge", "the origin, whose depth is fixed", hinge, 10)
-    return panel, ratios
+    return panel, [float(middle[0] / hinge[0]) for middle in middles]
 
 
-def _nets(paper: Paper, net: Array) -> Panel:
-    panel = paper.panel(_HALF, *_SEEN, f"blue: the DLT; orange: its cure; shifts × {_TIMES}")
+def _net(paper: Paper, net: Array, name: str, colour: str) -> Panel:
+    """Draw a net over the corners as they are seen, its shifts enlarged."""
+    panel = paper.panel(_HALF, *_SEEN, f"{name}: {rms(net):.2f} px off (drawn × {_TIMES})")
     m = corners()[1]
     draw_squares(panel, m, _BOARD, _PALE)
-    for one, colour in ((net, LENS), (normalised(), ESTIMATED)):
-        draw_net(panel, m + _TIMES * (one - m), _BOARD, colour, 1.6)
+    draw_net(panel, m + _TIMES * (net - m), _BOARD, colour, 2)
     panel.polygons(m[:, None] + 2.6 * panel.pixel * circle(17), IDEAL)
-    return panel
-
-
-def _bars(paper: Paper, costs: Array) -> Panel:
-    """Draw two bills as bars, of noise in grey and of a bad fit in blue, one behind the other."""
-    title = "(miss × depth)², mean: the DLT wants it small"
-    panel = paper.panel(_HALF, (0, _HALF[0]), (_HALF[1], 0), title)
-    long = (_HALF[0] - 30) / _BILL
-    for name, ink, (noise, fit), y in zip(
-        ("the true board", "the blue board"), (IDEAL, LENS), costs, (130, 42), strict=True
-    ):
-        ends = 15 + long * np.array([0, noise, noise + fit])
-        for left, right, colour in ((*ends[:2], _GREY), (*ends[1:], LENS)):
-            panel.polygons([[[left, y], [right, y], [right, y + 26], [left, y + 26]]], colour)
-        panel.text([15, y + 44], f"{name} costs {noise + fit:.2f}", ink, size=13)
-        panel.text([15, y - 14], f"noise {noise:.2f}", MUTED)
-        if fit > 0.004:
-            panel.text([max(ends[1], 95), y - 14], f"worse fit {fit:.2f}", LENS)
     return panel

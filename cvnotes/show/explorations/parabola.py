@@ -12,9 +12,9 @@ from cvnotes.show.style import ESTIMATED, LENS, MUTED, mixed, rgb
 
 _NEAREST, _FARTHEST = -190, 630  # mm, of the start
 _SHOWN = (-760.0, 730.0), (210_000.0, -30_000.0)  # t in mm, the cost in px²
-_STEPS, _HEIGHT = 5, 340  # px
+_STEPS = 5
 _WALL = -450  # mm: beyond it row 1 would lie behind the camera
-_WIDE, _NARROW = (544, 204), (374, 374)  # px, of the cost and of the RMS
+_WIDE, _NARROW = (754, 360), (374, 340)  # px
 _GROUND = "#8FA3BD", "#EDF1F6"  # low and high
 _APART = 16  # px between steps that have a number each
 
@@ -27,7 +27,7 @@ def parabola_model() -> Model:
     )
     about = (
         "The cost over one unknown t as a hilly ground, a parabola that touches it where t is, and "
-        "the steps to its lowest point from there on, damped or not. Beside it their RMS."
+        "the steps to its lowest point from there on, damped or not."
     )
     return Model("parabola", about, settings, _draw, {"t": lambda _, at: {"t": float(at[0])}})
 
@@ -63,8 +63,9 @@ def _ground() -> Drawn:
 
 
 def _draw(paper: Paper, values: Values) -> Drawing:
-    (t, mu), (wide, beside) = values.values(), _NARROW if paper.narrow else _WIDE
-    panel = paper.panel((wide, _HEIGHT), *_SHOWN, "the cost over t (mm), and its parabola")
+    t, mu = values.values()
+    size = _NARROW if paper.narrow else _WIDE
+    panel = paper.panel(size, *_SHOWN, "the cost over t (mm), and its parabola")
     panel.image(_ground())
     (left, right), (top, _) = _SHOWN
     before = np.linspace(_WALL + 1, right, 600)
@@ -87,8 +88,7 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     panel.mark(at, "world", 9)
     panel.grip("t", "t, where the parabola touches", at, 4)
     rms = np.sqrt(cost(way) / len(r))
-    course = _course(paper, (beside, 200 if paper.narrow else _HEIGHT), np.log10(rms))
-    return Drawing(paper.join((panel, course)), _sentence(way, rms, mu))
+    return Drawing(paper.join((panel,)), _sentence(way, rms, mu))
 
 
 def _name(panel: Panel, passing: float) -> None:
@@ -113,21 +113,6 @@ def _number_steps(panel: Panel, way: Array) -> None:
             panel.mark(at, "estimated", 5)
             panel.text(at + aside, f"{step}", ESTIMATED, anchor="mm", size=13)
             last = here
-
-
-def _course(paper: Paper, size: tuple[int, int], powers: Array) -> Panel:
-    """Draw the RMS after each step, as powers of ten."""
-    left = -46 * _STEPS / (size[0] - 60)  # there the numbers stand
-    panel = paper.panel(size, (left, 1.04 * _STEPS), (4.3, -0.5), "RMS (px) after each step")
-    panel.ticks(x=np.arange(1, _STEPS + 1), size=11)
-    for power in range(5):
-        panel.line(np.array([[left, power], [2 * _STEPS, power]]), "#DDDDDD", 0.5)
-        panel.text([0.95 * left, power], f"{10**power:,}", anchor="lm", size=11)
-    curve = np.column_stack([np.arange(_STEPS + 1), powers])
-    panel.line(curve, ESTIMATED, 2.4)
-    panel.mark(curve[1:], "estimated", 6)
-    panel.mark(curve[0], "world", 6)
-    return panel
 
 
 def _sentence(way: Array, rms: Array, mu: float) -> str:

@@ -12,7 +12,9 @@ _SHOWN, _HIGH, _AHEAD = (-1540.0, 1120.0), (-60.0, 520.0), (1210.0, -75.0)  # px
 # The near corner of the house, its foot and top, and how long a wall is; in px, like f.
 _CORNER, _FOOT, _TOP, _LONG = np.array([-30.0, 900.0]), 165.0, -215.0, 300.0
 _WALLS = ("#A65F43", "#C98A68")
-_SKY, _GRASS = "#EAF3FA", "#DDE6CF"
+_SKY, _GRASS = ("#EDF3F8", "#BFD6EC"), ("#E4EAD9", "#A9BE8B")  # around the picture, and in it
+_EVERYWHERE = (-2e3, -200), (2e3, -200), (2e3, 2e3), (-2e3, 2e3)
+_DISC, _ROOF = "#FBF1C7", "#DDB299"
 
 
 def protractor_model() -> Model:
@@ -63,8 +65,10 @@ def _angle(ways: Array) -> float:
 def _draw_picture(panel: Panel, ends: Array, ways: Array) -> None:
     frame = np.array([[0, 0], [640, 0], [640, 480], [0, 480]]) - 0.5
     row = _C[1]
-    panel.polygons([frame], _SKY)
-    panel.polygons([np.maximum(frame, [-9, row])], _GRASS)
+    around = np.stack([np.repeat(_SHOWN, 2), [*_HIGH, *_HIGH[::-1]]], axis=1)
+    for corners, sky, grass in zip((around, frame), _SKY, _GRASS, strict=True):
+        panel.polygons([corners], sky)
+        panel.polygons([np.maximum(corners, [_SHOWN[0], row])], grass)
     panel.line([[_SHOWN[0], row], [_SHOWN[1], row]], IDEAL, 1.2)  # behind the house
     far = _CORNER + _LONG * ways / np.linalg.norm(ways, axis=1, keepdims=True)
     for (x, z), end, ink in zip(far, ends, _WALLS, strict=True):
@@ -88,6 +92,15 @@ def _draw_above(panel: Panel, ends: Array, ways: Array, angle: float) -> None:
     eye = np.array([_C[0], 0])
     corner = eye + _CORNER
     units = ways / np.linalg.norm(ways, axis=1, keepdims=True)
+    panel.polygons([np.array(_EVERYWHERE)], _GRASS[0])
+    round_ = np.radians(np.arange(0, 181, 10))[:, None] * [1, 1] + [np.pi / 2, 0]
+    rim = eye + 340 * np.sin(round_)  # the half disc, at every ten degrees
+    panel.polygons([rim], _DISC)
+    panel.line([*rim, rim[0]], MUTED, 1)
+    panel.segments(np.stack([rim, eye + 0.92 * (rim - eye)], axis=1), MUTED, 1)
+    panel.polygons(
+        [corner + _LONG * np.array([[0, 0], units[0], units.sum(axis=0), units[1]])], _ROOF
+    )
     panel.line([[_SHOWN[0], _F], [_SHOWN[1], _F]], IDEAL, 1.2)
     panel.line([[0, _F], [639, _F]], MUTED, 4)
     panel.text([_SHOWN[0] + 16, _F + 42], "the plane of the picture", IDEAL, size=13)
@@ -104,7 +117,7 @@ def _draw_above(panel: Panel, ends: Array, ways: Array, angle: float) -> None:
         arc = eye + 110 * np.array([units[0], units.sum(axis=0), units[1]])
     panel.line(arc, IDEAL, 1.6)
     middle = units.sum(axis=0) / np.linalg.norm(units.sum(axis=0))
-    panel.text(eye + 310 * middle, f"{angle:.1f}°", IDEAL, anchor="mm", size=15)
+    panel.text(eye + 235 * middle, f"{angle:.1f}°", IDEAL, anchor="mm", size=16)
     panel.mark(eye, "camera", 9, looks=(0, -1))
-    panel.text(eye + [44, -8], "eye", CAMERA, size=14)
+    panel.text(eye + [44, -38], "eye", CAMERA, size=14)
     panel.text(corner + [36, -30], "house", "#8E4B38", size=13)

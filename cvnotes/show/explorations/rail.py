@@ -70,7 +70,7 @@ def _draw(paper: Paper, values: Values) -> Drawing:
         place = on_rail(part, side)
         x, y, z, _ = place
         glass, end = _ASIDE.project(_GLASS / z * np.array([x, y, z])), _seen(_ASIDE, place)
-        edge = _edge(glass, end)
+        edge = beyond(_ASIDE.project(_corners()), glass, end)
         if edge is not None:  # else the picture hides it
             space.line([edge, end], ESTIMATED, width)
             space.mark(end, "world", 9 if side == 1 else 6)
@@ -80,9 +80,8 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     return Drawing(paper.join((space, _picture(paper, part))), _sentence(part))
 
 
-def _edge(start: Array, end: Array) -> Array | None:
-    """Return where the way from the picture on the glass to a place beyond leaves its outline."""
-    outline = _ASIDE.project(_corners())
+def beyond(outline: Array, start: Array, end: Array) -> Array | None:
+    """Return where the way from within an outline (n, 2) to a place beyond leaves it."""
     for a, b in zip(outline, np.roll(outline, -1, axis=0), strict=True):
         share, along = np.linalg.solve(np.column_stack([end - start, a - b]), a - start)
         if 0 < share <= 1 and 0 <= along <= 1:
@@ -114,12 +113,7 @@ def _scene() -> Drawn:
     panel.image(render_scene(rails(), eye, samples=4))
     _lay_sheets(panel, [_GLASS, 1e5])
     H = aside.P @ np.vstack([_GLASS * np.linalg.inv(_finer(_CAMERA).A), [0, 0, 1]])
-    photo = _photograph()
-    glass = np.dstack([photo, np.full_like(photo[..., :1], 255)])
-    laid = backward_warp(glass, homography_map(np.linalg.inv(H)), size=aside.size).astype(float)
-    clear = laid[..., 3:] / 255
-    page = (1 - clear) * panel.drawn() + laid[..., :3]
-    panel.image(page.round().clip(0, 255).astype(np.uint8))
+    panel.image(laid(panel.drawn(), _photograph(), H))
     corners, centre = _ASIDE.project(_corners()), _ASIDE.project([0.0, 0, 0])
     panel.line([*corners, corners[0]], CAMERA, 1.2)
     panel.segments([[centre, corner] for corner in corners], CAMERA, 1)
@@ -127,6 +121,15 @@ def _scene() -> Drawn:
     for words, place in (("camera", centre + [-14, 16]), ("its picture", corners[0] + [2, -12])):
         panel.text(place, words, IDEAL, anchor="lm", size=14)
     return panel.drawn()
+
+
+def laid(page: Drawn, photo: Drawn, H: Array) -> Drawn:
+    """Lay a photograph over a page: H (3, 3) leads from its pixels to those of the page."""
+    glass = np.dstack([photo, np.full_like(photo[..., :1], 255)])
+    size = page.shape[1::-1]
+    over = backward_warp(glass, homography_map(np.linalg.inv(H)), size=size).astype(float)
+    both = (1 - over[..., 3:] / 255) * page + over[..., :3]
+    return np.asarray(both.round().clip(0, 255).astype(np.uint8))
 
 
 def _lay_sheets(panel: Panel, ends: list[float]) -> None:

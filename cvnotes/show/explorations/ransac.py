@@ -51,16 +51,16 @@ def ransac_model() -> Model:
         agree = np.linalg.norm(put - pairs, axis=-1) < limit
         (left, top), (right, bottom) = _PART
         panel = paper.panel(
-            (440, 360), (left - 0.5, right - 0.5), (top - 0.5, bottom - 0.5),
+            (504, 413), (left - 0.5, right - 0.5), (top - 0.5, bottom - 0.5),
             "the pairs, and one homography",
         )  # fmt: skip
         panel.image(photograph())
         _draw_pairs(panel, put[n], pairs, agree[n], true)
         panel.mark(fours[n][: 4 * min(n, 1)], "ideal", 8)
         panel.text([right - 12, top + 24], f"{agree[n].sum()} agree", LENS, anchor="rm", size=22)
-        _name_marks(panel, (left + 16, bottom - 14))
+        _name_marks(panel, left + 16, bottom - 14)
         votes = paper.panel(
-            (340, 360), (-4, _DRAWS + 3), (60, -9), "pairs that agree, draw by draw"
+            (276, 413), (-4, _DRAWS + 3), (60, -9), "pairs that agree, draw by draw"
         )
         counts = agree.sum(axis=1)
         _draw_votes(votes, counts[: n + 1])
@@ -103,25 +103,15 @@ def _draw_pairs(panel: Panel, put: Array, pairs: Array, agree: Mask, true: Mask)
     panel.mark(pairs[agree], "lens", 5)
 
 
-def _name_marks(panel: Panel, at: tuple[int, int]) -> None:
+def _name_marks(panel: Panel, x: float, y: float) -> None:
     """Write what the marks mean, below the board."""
-    x, y = at
-    square = panel.pixel * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
+    panel.polygons([[[0, y - 18], [1e3, y - 18], [1e3, 1e3], [0, 1e3]]], "white")
+    panel.mark([x, y], "ideal", 8)
+    panel.mark([x + 95, y], "lens", 7)
     diamond = panel.pixel * np.array([[0, -1], [1, 0], [0, 1], [-1, 0]])
-    strip = np.array([[0, y - 16], [1e3, y - 16], [1e3, 1e3], [0, 1e3]])
-    panel.polygons([strip], "white")
-    panel.mark([x, y], "ideal", 7)
-    panel.mark([x + 78, y], "lens", 5)
-    right, wrong = np.array([[x + 142, y], [x + 290, y]])
-    panel.polygons([right + 2.5 * square], _WRONG)
-    panel.polygons([wrong + 7 * diamond, wrong + 5 * diamond], (IDEAL, "white"))
-    for aside, words in (
-        (11, "believed"),
-        (87, "agrees"),
-        (150, "right, but disagrees"),
-        (301, "wrong"),
-    ):
-        panel.text([x + aside, y], words, size=12)
+    panel.polygons([[x + 175, y] + 8 * diamond, [x + 175, y] + 6 * diamond], (IDEAL, "white"))
+    for aside, words in ((12, "believed"), (105, "agrees"), (188, "wrong")):
+        panel.text([x + aside, y], words, size=14)
 
 
 def _draw_votes(panel: Panel, counts: Array) -> None:

@@ -1,15 +1,17 @@
 """Explore rectification: two cameras turn on the spot until their pictures share their rows."""
 
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from cvnotes.base import Array
 from cvnotes.camera import Camera, pose, rotation_from_vector, vector_from_rotation
 from cvnotes.pictures import depth_map, room
 from cvnotes.show.explorations.epipolar import cameras, photographs
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
-from cvnotes.show.explorations.paper import Paper
+from cvnotes.show.explorations.paper import Drawn, Paper
 from cvnotes.show.style import ESTIMATED, IDEAL
 from cvnotes.stereo import epipole
 from cvnotes.warping import backward_warp, homography_map
@@ -27,10 +29,12 @@ def rectification_model() -> Model:
         Setting("turned", "turned (%)", 0, 100, 1, 0, "how far to the attitude that both share"),
         Setting("u", "u (px)", 60, 620, 1, 449, "a pixel of the first picture as it was taken"),
         Setting("v", "v (px)", 30, 450, 1, 205, "and its row"),
+        Setting("slid", "first slid over (%)", 0, 100, 1, 30, "how much of the second it covers"),
     )
     about = (
         "Two pictures of a room, and epipolar lines that belong together. The cameras turn on the "
-        "spot until all these lines are rows that both pictures share."
+        "spot until all these lines are rows that both pictures share. The first picture is slid "
+        "over the second: then no line breaks at the seam."
     )
 
     def pulled(values: Values, at: Array) -> Values:
@@ -38,7 +42,10 @@ def rectification_model() -> Model:
         u, v = old.project(old.centre + new.ray(at))
         return {"u": float(u), "v": float(v)}
 
-    return Model("rectification", about, settings, _draw, {"pixel": pulled})
+    def slid(_: Values, at: Array) -> Values:
+        return {"slid": float(at[0]) / 6.4}
+
+    return Model("rectification", about, settings, _draw, {"pixel": pulled, "seam": slid})
 
 
 def turned(part: float) -> tuple[Camera, Camera]:
@@ -74,30 +81,50 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     through = first.centre + first.ray([[first.A[0, 2], v] for v in _ROWS])
     rows = whole[0].project(through)[:, 1]
     row = whole[0].project(W)[1]
-    panels, at = [], []
-    for old, new, end, photo, name in zip(
-        cameras(), now, whole, photographs(), ("first", "second"), strict=True
-    ):
-        panel = paper.picture_panel(_SHOWN, old.size, f"the {name} camera")
-        H = old.A @ old.R @ new.R.T @ np.linalg.inv(new.A)  # pixel as taken from pixel as turned
-        photo = photo.clip(0, 255).astype(np.uint8)
-        panel.image(np.asarray(backward_warp(photo, homography_map(H), fill=_UNSEEN), np.uint8))
+    m = np.array([camera.project(W) for camera in now])
+    seam = round(6.4 * values["slid"])
+    photos = [
+        _seen(old, new, photo)
+        for old, new, photo in zip(cameras(), now, photographs(), strict=True)
+    ]
+    photos[1] = np.hstack([photos[0][:, :seam], photos[1][:, seam:]])
+    names = "the first camera", "the second camera: pull the seam"
+    panels = [paper.picture_panel(_SHOWN, first.size, name) for name in names]
+    for k, panel in enumerate(panels):
+        panel.image(photos[k])
         for v, width in (*((v, 1) for v in rows), (row, 2)):
-            panel.line(_line(new, end, v), "#FFFFFF", width + 0.7)
-            panel.line(_line(new, end, v), ESTIMATED, width)
-        at.append(new.project(W))
-        panel.line([[-9, at[0][1]], [old.size[0] + 9, at[0][1]]], IDEAL, 1, dash=5)
-        panel.mark(at[-1], "ideal", 8)
-        panels.append(panel)
-    right, row = panels[1], at[0][1]
-    right.text([626, row + 9], "row of the plus", IDEAL, anchor="ra", size=12, rim="white")
-    side = -1 if at[1][0] > 130 else 1  # its name has room there
-    right.text(
-        at[1] + [14 * side, -10], "partner", IDEAL, anchor="rd" if side < 0 else "ld",
-        size=12, rim="white",
-    )  # fmt: skip
-    panels[0].grip("pixel", "a pixel of the first picture", at[0], 4)
-    return Drawing(paper.join((panels[0], panels[1])), _sentence(now, at))
+            lines = [_line(new, end, v) for new, end in zip(now, whole, strict=True)]
+            parts = [_until(lines[0], seam), _until(lines[1], seam, after=True)] if k else lines[:1]
+            for part in parts:
+                panel.line(part, "#FFFFFF", width + 0.7)
+                panel.line(part, ESTIMATED, width)
+        panel.line([[-9, m[0, 1]], [first.size[0] + 9, m[0, 1]]], IDEAL, 1, dash=5)
+    left, right = panels
+    left.mark(m[0], "ideal", 8)
+    left.grip("pixel", "a pixel of the first picture", m[0], 4)
+    right.text([626, m[0, 1] + 9], "row of the plus", IDEAL, anchor="ra", size=12, rim="white")
+    if m[1, 0] > seam:
+        right.mark(m[1], "ideal", 8)
+        side = -1 if m[1, 0] > seam + 130 else 1  # its name has room there
+        anchor = "rd" if side < 0 else "ld"
+        right.text(m[1] + [14 * side, -10], "partner", IDEAL, anchor=anchor, size=12, rim="white")
+    right.line([[seam, -9], [seam, 490]], "#FFFFFF", 2)
+    right.grip("seam", "the seam between both pictures", [seam, 440], 6)
+    return Drawing(paper.join((left, right)), _sentence(now, m))
+
+
+def _seen(old: Camera, new: Camera, photo: npt.NDArray[Any]) -> Drawn:
+    """Return what a camera shows after its turn of what it took before."""
+    H = old.A @ old.R @ new.R.T @ np.linalg.inv(new.A)  # pixel as taken from pixel as turned
+    photo = photo.clip(0, 255).astype(np.uint8)
+    return np.asarray(backward_warp(photo, homography_map(H), fill=_UNSEEN), np.uint8)
+
+
+def _until(line: Array, u: float, after: bool = False) -> Array:
+    """Return the part of a line (2, 2) to the left of a column, or to its right."""
+    a, b = line[line[:, 0].argsort()]
+    cut = a + (b - a) * (u - a[0]) / (b[0] - a[0])
+    return np.array([cut, b] if after else [a, cut])
 
 
 def _line(new: Camera, end: Camera, v: float) -> Array:
@@ -107,8 +134,8 @@ def _line(new: Camera, end: Camera, v: float) -> Array:
     return np.asarray(m + 9 * np.array([[-1], [1]]) * (m[1] - m[0]))
 
 
-def _sentence(now: tuple[Camera, Camera], at: list[Array]) -> str:
-    own, partner = at[0][1], at[1][1]
+def _sentence(now: tuple[Camera, Camera], m: Array) -> str:
+    own, partner = m[:, 1]
     said = f"The pixel stands in row {own:.1f}, its partner in row {partner:.1f}"
     (u1, v1, w), (u2, v2, _) = epipole(*now), epipole(*now[::-1])
     if abs(u1) > _INFINITE * abs(w):

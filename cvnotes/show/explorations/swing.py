@@ -10,12 +10,12 @@ from cvnotes.homography import dlt, refine_homography
 from cvnotes.pictures import course
 from cvnotes.projective import apply
 from cvnotes.show.explorations.model import Drag, Drawing, Model, Setting, Values
-from cvnotes.show.explorations.paper import Drawn, Panel, Paper
+from cvnotes.show.explorations.paper import Drawn, Paper
 from cvnotes.show.explorations.strokes import circle
-from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED, mixed
+from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED
 
 _SHOWN = (115.0, 1495.0), (525.0, 1200.0)  # px, u and v: below, the sensor ends
-_SIZE, _BARS = (540, 264), (310, 264)
+_WIDE, _NARROW = (754, 369), (374, 240)  # px
 _TIMES = 7  # as long as they are, arrows are drawn
 _FAR, _DOWN = 100, 60  # px: how far a dot can be pulled; down to the sensor's end
 _TONES = np.array([[255, 250, 244], [243, 231, 219]])  # of the tiles
@@ -33,7 +33,7 @@ def swing_model() -> Model:
     about = (
         "A tiled floor with six rows of dots, one of which is pulled away, and arrows that show "
         "how row 1 gives way: of the DLT, and of the homography with the least error in pixels. "
-        "Beside it the weight of each row in the DLT, and how far row 1 moves."
+        "Beside each row its weight in the DLT."
     )
 
     def pulled(row: int) -> Drag:
@@ -91,10 +91,9 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     dots = _dots()
     held = dots[:, column - 1].copy()
     held[row - 1] += values["du"], values["dv"]
-    panel = paper.panel(
-        _SIZE, *_SHOWN, f"how row 1 gives way, × {_TIMES}: blue DLT, orange refined"
-    )
-    panel.image(_ground(paper.sharpness))
+    size = _NARROW if paper.narrow else _WIDE
+    panel = paper.panel(size, *_SHOWN, f"how row 1 gives way, × {_TIMES}: blue DLT, orange refined")
+    panel.image(_ground(size, paper.sharpness))
     for line in (*dots, *dots.transpose(1, 0, 2)):
         panel.line(line, MUTED, 0.6)
     panel.line([dots[row - 1, column - 1], held[row - 1]], IDEAL, 1, dash=3)
@@ -108,57 +107,33 @@ def _draw(paper: Paper, values: Values) -> Drawing:
         (others, 3, "white"),
     ):
         panel.polygons(at[:, None] + size * panel.pixel * circle(17), ink)
-    moved = [
-        [(net - dots)[0] for net in nets(k, column, values["du"], values["dv"])]
-        for k in range(row, 7)
-    ]
-    for by, colour in zip(moved[0], _INKS, strict=True):
+    moved = [(net - dots)[0] for net in nets(row, column, values["du"], values["dv"])]
+    for by, colour in zip(moved, _INKS, strict=True):
         panel.arrows(dots[0], _TIMES * by, colour, 2.4)
-    tips = dots[0] + _TIMES * moved[0][1]
+    tips = dots[0] + _TIMES * moved[1]
     panel.polygons(tips[:, None] + 2.8 * panel.pixel * circle(17), ESTIMATED)  # short arrows, too
-    for i, (at, v) in enumerate(zip(held, dots[:, 0, 1], strict=True), start=1):
+    rows = zip(held, dots[:, 0, 1], weights(), strict=True)
+    for i, (at, v, weight) in enumerate(rows, start=1):
         if i in grips:
             panel.grip(f"row {i}", f"the dot of row {i}", at, 1)
-        panel.text([_SHOWN[0][0] + 12, v], f"{i}", IDEAL, size=12)
+        panel.text([_SHOWN[0][0] + 10 * panel.pixel, v], f"{i}", IDEAL, size=13)
+        words = f"weight {weight:.3g}" if i == 6 else f"{weight:.2g}"
+        panel.text([_SHOWN[0][1] - 10 * panel.pixel, v], words, LENS, anchor="rm", size=13)
     aside, anchor = (-16, "rm") if held[row - 1, 0] > _SHOWN[0][0] + 200 else (16, "lm")
     lift = 18 * panel.pixel if held[row - 1, 1] > _SHOWN[1][1] - 50 else 0  # above the border
     at = held[row - 1] + [aside * panel.pixel, -lift]
     panel.text(at, "pulled", IDEAL, anchor=anchor, size=12)
     far = np.linalg.norm(moved, axis=-1).max(axis=-1)
-    return Drawing(paper.join((panel, _bars(paper, far))), _sentence(values, far[0].tolist()))
-
-
-def _bars(paper: Paper, far: Array) -> Panel:
-    """Draw what each row weighs in the DLT, and how far row 1 gives way (k, 2) to the k last."""
-    title = "weight in the DLT; row 1 moves by (px)"
-    panel = paper.panel(_BARS, (0, _BARS[0]), (_BARS[1], 0), title)
-
-    def bar(x: float, y: float, length: float, words: str, ink: str, word: str = MUTED) -> None:
-        panel.polygons([[[x, y - 6], [x + length, y - 6], [x + length, y + 6], [x, y + 6]]], ink)
-        panel.text([x + length + 5, y], words, word, size=12)
-
-    for i, weight in enumerate(weights(), start=1):
-        y = 42.0 * i - 16
-        panel.text([10, y], f"row {i}", size=12)
-        bar(54, y, weight / 3, f"{weight:.2g}" if weight < 10 else f"{weight:.0f}", MUTED)
-        if i <= 6 - len(far):
-            panel.text([166, y], "?", size=14)
-            continue
-        for px, colour, up in zip(far[i - 7], _INKS, (7, -7), strict=True):
-            here = i == 7 - len(far)
-            ink = colour if here else mixed("#FFFFFF", colour, 0.4)
-            name = {LENS: " DLT", ESTIMATED: " refined"}[colour] if here else ""
-            bar(164, y + up, min(1.4 * px, 74), f"{px:.1f}{name}", ink, colour)
-    return panel
+    return Drawing(paper.join((panel,)), _sentence(values, far.tolist()))
 
 
 @lru_cache(maxsize=3)
-def _ground(sharpness: int) -> Drawn:
+def _ground(size: tuple[int, int], sharpness: int) -> Drawn:
     """Paint tiles of 100 mm × 150 mm, 300 mm below the camera, paler towards the horizon."""
     (alpha_u, _, u0), (_, alpha_v, v0), _ = floor_A()
     u, v = (
         np.linspace(*ends, 3 * sharpness * n, endpoint=False)
-        for ends, n in zip(_SHOWN, _SIZE, strict=True)
+        for ends, n in zip(_SHOWN, size, strict=True)
     )
     far = alpha_v * 300 / (v - v0).clip(1e-3)  # mm
     odd = (np.floor((u - u0) / alpha_u * far[:, None] / 100) + np.floor(far / 150)[:, None]) % 2
