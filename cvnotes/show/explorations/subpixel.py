@@ -84,7 +84,7 @@ def _normal(line: Array) -> Array:
 def crossing(both: Array) -> Array:
     """Return where two lines meet, (2,)."""
     n = np.array([_normal(line) for line in both])
-    return np.linalg.solve(n, np.sum(n * both[:, 0], axis=1))
+    return np.asarray(np.linalg.solve(n, np.sum(n * both[:, 0], axis=1)))
 
 
 def dots(corner: int, both: Array) -> list[Array]:
