@@ -78,7 +78,7 @@ def lines(values: Values) -> Array:
 
 def _normal(line: Array) -> Array:
     way = line[1] - line[0]
-    return np.array([-way[1], way[0]]) / np.hypot(*way)
+    return np.asarray(np.array([-way[1], way[0]]) / np.hypot(*way))
 
 
 def crossing(both: Array) -> Array:
