@@ -554,3 +554,14 @@ def test_what_is_right_passes_for_every_seed_and_in_every_style(name):
         for seed, (style, answer) in zip(SEEDS, cycle(written(exercise, function)), strict=False):
             report = judged(exercise, answer, seed)
             assert report.passed, (function, style, seed, report)
+
+
+def test_the_covariance_by_views_is_the_corner_of_the_whole_inverse():
+    from cvnotes.learn.ch07.camera_covariance import camera_covariance
+
+    rng = np.random.default_rng(1)
+    Jc, Jp = rng.normal(size=(2, 20, 3)), rng.normal(size=(2, 20, 6))
+    J = np.zeros((40, 15))
+    J[:, :3], J[:20, 3:9], J[20:, 9:] = Jc.reshape(40, 3), *Jp
+    whole = np.linalg.inv(J.T @ J)
+    assert np.allclose(camera_covariance(Jc, Jp), whole[:3, :3], rtol=1e-9, atol=0)

@@ -86,6 +86,7 @@ from cvnotes.show.explorations import (
     protractor,
     push,
     rodrigues,
+    subpixel,
     thirteen,
     triangle,
     twins,
@@ -698,35 +699,29 @@ def test_on_the_way_of_the_finding_each_part_of_a_step_is_nearer(finding):
     assert (np.diff(finding.way[::3, 1]) < 0).all()
 
 
-def test_a_frame_of_the_finding_has_its_arrows_from_the_step_on_that_leads_to_it():
-    def arrows(step):
-        picture = MODELS["finding"].picture(step=step)[TITLE:, :456]
-        rows, columns = np.array_split(picture, 2), 456 // 2
-        halves = [half for row in rows for half in (row[:, :columns], row[:, columns:])]
-        return [count(half[25:], ESTIMATED) for half in halves]  # below its title
-
-    whole = arrows(3)
-    assert min(whole) > 200
-    for begun in range(4):
-        seen = arrows(max(begun - 0.4, 0))
-        assert [bool(n) for n in seen] == [k <= begun for k in range(4)]
-        assert seen[:begun] == whole[:begun]
+def test_boards_are_found_nearer_to_where_they_stood_step_by_step(finding):
+    off = []
+    for step in (0, 1, 2, 3):
+        G = finding.poses(step)
+        assert np.allclose(np.linalg.det(G[:, :3, :3]), 1, rtol=1e-9)
+        off.append(np.linalg.norm(G[:, :3, 3] - course.poses()[:, :3, 3], axis=1).max())
+        said = numbers(MODELS["finding"].drawing(step=step).sentence)
+        assert said[2] == pytest.approx(off[-1], rel=0.06)
+    assert np.allclose(off, [31.1, 7.6, 0.22, 0.05], rtol=0.2)
 
 
-def test_a_frame_of_the_finding_keeps_its_scale_and_no_arrow_leaves_it(finding, monkeypatch):
-    drawn = []
+def test_the_arrows_of_the_finding_are_its_misses_so_enlarged_as_is_said(finding, monkeypatch):
+    drawn, titles = [], []
     monkeypatch.setattr(Panel, "arrows", lambda _, *arrows: drawn.append(arrows[:2]))
-
-    def of_the_last_frame(step, left):
+    make = Paper.panel
+    monkeypatch.setattr(Paper, "panel", lambda *a: titles.append(a[-1]) or make(*a))
+    for step in (0, 1.5, 3):
         MODELS["finding"].drawing(step=step, photograph=2)
         starts, ways = drawn[-1]
-        ends = starts + ways
-        assert ((ends > [left, 2]) & (ends < [left + 2, 4])).all()
-        return ways
-
-    scales = [of_the_last_frame(step, 2) / finding.at(step)[1][2] for step in (2.85, 3)]
-    assert np.allclose(scales, scales[0][0], rtol=1e-9, atol=0)  # the arrows shorten as the misses
-    assert 0 < len(of_the_last_frame(1.5, 0)) < 54
+        times = next(int(title.split()[-1]) for title in titles[::-1] if "misses" in title)
+        assert np.allclose(starts, finding.m[2])
+        assert np.allclose(ways, -times * finding.at(step)[1][2], rtol=1e-9)
+        assert 20 < np.linalg.norm(ways, axis=1).max() < 80
 
 
 @pytest.fixture(scope="module")
@@ -2457,9 +2452,8 @@ def test_what_is_not_there_is_said_where_one_looks_for_it(written):
     for name, values, words in (
         ("folds", {"k1": 0, "turned": 0.4}, "farther out"),
         ("folds", {"k1": -0.25, "turned": 0}, "no camera"),
-        ("finding", {"step": 1}, "step 2: not yet"),
     ):
-        MODELS[name].drawing(**({"step": 3} if name == "finding" else {}))
+        MODELS[name].drawing()
         assert words not in written
         MODELS[name].drawing(**values)
         assert words in written
@@ -3914,6 +3908,8 @@ ON_A_WAY = {  # along a curve, by its x
     ("poster", "width"),
     ("thirteen", "number"),
     ("rectification", "seam"),
+    ("subpixel", "upper end"),
+    ("subpixel", "lower end"),
 }
 ROUND = {
     ("rim", "ring"),
@@ -3968,6 +3964,8 @@ UP_AND_DOWN = {
     "walk",
     "height",
     "sensor",
+    "left end",
+    "right end",
 }  # the eye to the nearest place of its half circle
 
 
@@ -4197,36 +4195,46 @@ def test_the_edge_model_that_beats_the_hand_is_that_of_two_blurred_edges():
         m = np.linalg.solve([p[:2], p[3:5]], [-p[2], -p[5]])
         truth = course.exact_corners()[6, corner]
         said = numbers(MODELS["subpixel"].drawing(corner=corner, finders=1).sentence)
-        assert np.linalg.norm(m + np.rint(truth) - truth) == pytest.approx(said[2], abs=0.002)
+        assert np.linalg.norm(m + np.rint(truth) - truth) == pytest.approx(said[4], abs=0.002)
 
 
-def test_hits_lie_among_rings_of_which_each_is_a_fifth_of_the_next():
-    truth = course.exact_corners()[6, 31]
-    for u, v in ((-0.31, 0.2), (0.35, -0.42), (1.6, -1.7), (2.9, 2.9)):
-        off = np.array([u, v]) - (truth - np.rint(truth))
-        drawing = MODELS["subpixel"].drawing(corner=31, u=u, v=v, finders=1)
-        said = numbers(drawing.sentence)
-        assert said[0] == pytest.approx(np.linalg.norm(off), abs=0.006)
-        target = drawing.picture[TITLE + 30 : TITLE + 361, -391 - MARGIN :].astype(int)  # no key
-        for far, ink in zip(said, (WORLD, LENS, ESTIMATED), strict=True):
-            at = np.argwhere(np.abs(target - colour(ink)).max(axis=-1) < 40).mean(axis=0)
-            at = at[::-1] + [0.5, 30.5] - 195.5
-            ring = min(max(4 + np.log(far / 0.5) / np.log(5), 0), 5.25)  # the last one: 0.5 px
-            about = 391 / 11.5 * 0.0006 / far / np.log(5)  # of a number of three digits
-            assert np.linalg.norm(at) == pytest.approx(391 / 11.5 * ring, abs=1 + about)
-            if ink == WORLD:
-                assert at / np.linalg.norm(at) == pytest.approx(off / np.linalg.norm(off), abs=0.03)
+def _true_ends(corner):
+    """Give where the board's own lines through a corner pass the borders, 7.5 px from its pixel."""
+    m = course.exact_corners()[6].reshape(6, 9, 2)
+    row, column = divmod(corner, 9)
+    at = m[row, column] - np.rint(m[row, column])
+    down, right = m[row + 1, column] - m[row - 1, column], m[row, column + 1] - m[row, column - 1]
+    top, bottom = (at[0] + (v - at[1]) * down[0] / down[1] for v in (-7.5, 7.5))
+    left, right = (at[1] + (u - at[0]) * right[1] / right[0] for u in (-7.5, 7.5))
+    return {"top": top, "bottom": bottom, "left": left, "right": right}
 
 
-def test_who_pulls_the_cross_sees_no_hits():
+def test_pixels_beside_the_true_edges_lie_on_the_curve_of_a_blurred_edge_up_to_the_noise():
+    for corner in (22, 31, 12, 40):
+        ends = _true_ends(corner)
+        for t, grey in (dots.T for dots in subpixel.dots(corner, subpixel.lines(ends))):
+            assert len(t) > 100
+            assert 95 * np.std(grey - erf(t / (0.757 * np.sqrt(2)))) < 2.6  # its noise is 2
+        said = numbers(MODELS["subpixel"].drawing(corner=corner, finders=1, **ends).sentence)
+        assert max(said[:2]) < 2.6
+        assert said[2] < 0.02  # the lens bends the board's lines a little
+        off = {**ends, "top": ends["top"] + 0.5}
+        worse = numbers(MODELS["subpixel"].drawing(corner=corner, finders=1, **off).sentence)
+        assert worse[0] > 5 > worse[1]
+        slope = np.array([ends["bottom"] - ends["top"], ends["right"] - ends["left"]]) / 15
+        middle = subpixel.place_of(corner)[1]
+        there = 0.5 * (7.5 - middle) / 15 / (1 - slope[0] * slope[1])
+        assert worse[2] == pytest.approx(there * np.hypot(1, slope[1]), abs=0.03)
+
+
+def test_who_pulls_an_edge_sees_no_finders():
     model = MODELS["subpixel"]
-    right = [model.picture(u=u)[:, -391 - MARGIN :] for u in (-1, 1)]
-    assert np.array_equal(*right)
-    assert numbers(model.drawing().sentence) == []
-    grip = grip_of(model.drawing(finders=1), "cross")
-    moved = model.dragged("cross", tuple(np.array(grip.at) + [-1, 0.5]), finders=1)
-    assert moved == {**model.values(), "u": 0.6, "v": -1.2}
-    assert moved["finders"] == 0
+    assert len(numbers(model.drawing().sentence)) == 2
+    for held, by, name in (("upper end", (1, 0), "top"), ("right end", (0, 1), "right")):
+        grip = grip_of(model.drawing(finders=1), held)
+        moved = model.dragged(held, tuple(np.array(grip.at) + by), finders=1)
+        assert moved == pytest.approx({**model.values(), name: model.values()[name] + 1})
+        assert moved["finders"] == 0
 
 
 def test_with_the_lens_undone_the_equations_find_the_camera_and_for_parallel_boards_none():

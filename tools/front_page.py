@@ -29,7 +29,6 @@ CARD = (480, 320)  # px: twice what is shown
 # Cards that are a part of an exploration: its settings, the left and upper end, the width in px.
 PARTS = {
     "03_camera_model": ("glass", {}, (6, 88, 360)),
-    "05_calibration_targets": ("subpixel", {"u": 0.38, "v": -0.47}, (95, 122, 260)),  # pulled right
     "06_homography_dlt": ("homography", {"u": 0.0, "v": 0.0}, (20, 42, 346)),
     "07_zhang_calibration": ("nails", {}, (6, 44, 500)),
     "10_two_pictures": ("rectification", {}, (256, 26, 432)),

@@ -52,17 +52,14 @@ def exercise_map() -> Picture:
     'Ten cards. Projective space: 1 ★, A ★★, B ★★★. The camera model: 2 ★. '
     """
     tiles = (
-        ("Projective space", _rails(), "1 ★", "A ★★  B ★★★"),
-        ("The camera model", _wedge(), "2 ★"),
-        ("Lens distortion", _bent(), "3 ★★", "C ★★"),
-        ("Homographies", _missed(), "4 ★", "D ★★★"),
+        ("Projective space", _rails(), "1 ★", "A ★★  B ★★★"), ("The camera model", _wedge(), "2 ★"),
+        ("Lens distortion", _bent(), "3 ★★", "C ★★"), ("Homographies", _missed(), "4 ★", "D ★★★"),
         ("Zhang’s calibration", _boards(), "5 ★★  6 ★★  7 ★★", "E ★★★  F ★★★"),
-        ("Without a board", _turned(), "8 ★★★"),
-        ("Many views", _arrow(), "9 ★★★"),
+        ("Without a board", _turned(), "8 ★★★"), ("Many views", _arrow(), "9 ★★★"),
         ("Image warping", _pixels(), "10 ★★"),
         ("Your own camera", _telephone(), "11 ★★  12 ★★★", "G ★★★"),
         ("Two pictures", _diamond(), "13 ★★"),
-    )
+    )  # fmt: skip
     named = (f"{name}: {', '.join('  '.join(tasks).split('  '))}." for name, _, *tasks in tiles)
     return _sheet(tiles, 5, f"Ten cards. {' '.join(named)}", 18)
 

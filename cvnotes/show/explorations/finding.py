@@ -13,19 +13,21 @@ from cvnotes.calibration import (
     solve_b,
 )
 from cvnotes.calibration.refinement import Problem, State, solve_by_schur, take_step
-from cvnotes.camera import Camera, Lens
+from cvnotes.camera import Camera, Lens, move, pose, rotation_from_vector
 from cvnotes.homography import dlt
 from cvnotes.pictures import course
-from cvnotes.show.explorations.boards import draw_measured
+from cvnotes.show.explorations.boards import around, draw_measured, draw_sheet, paper_and_squares
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Panel, Paper
-from cvnotes.show.explorations.strokes import clipped
-from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED, mixed
+from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, LENS, WORLD, mixed
 
 _STEPS = 3
 _LONGEST = 0.12  # of the board's width in the photograph: so long is a frame's longest arrow
-_PALE = mixed(ESTIMATED, "#FFFFFF", 0.55)  # of arrows that leave their frame
-_FRAMES, _CURVE = (456, 304), (394, 304)
+_ROOM, _PHOTO, _CURVE = (430, 372), (394, 200), (394, 144)  # px
+_FLOOR, _TILES, _JOINTS, _SHADOW = 190.0, "#EFE7D9", "#FBFAF7", "#E0D8CB"  # mm below the camera
+_PANE = 60 * np.array([[-1, -0.75, 2.2], [1, -0.75, 2.2], [1, 0.75, 2.2], [-1, 0.75, 2.2]])
+_ROUND = [0, 1, 2, 3, 0]
+_VIEW = rotation_from_vector([0.45, 0, 0]) @ rotation_from_vector([0, 0.95, 0])  # from the side
 
 
 class Finding:
@@ -53,21 +55,20 @@ class Finding:
 
         The misses are (views, corners, 2), in pixels.
         """
-        whole = min(int(step), _STEPS - 1)
-        shared, poses = self._strides[whole]
-        part = step - whole
-        x: State = take_step(self.states[whole], (part * shared, part * poses))
+        x = self._state(step)
         camera = self.problem.camera_of(x.shared)
         return camera, self.problem.residuals(camera, x)
 
-    @cached_property
-    def enlarged(self) -> Array:
-        """How much longer than true the arrows of each photograph are after each step, (12, 4)."""
-        missed = np.array([self.at(step)[1] for step in range(_STEPS + 1)])
-        longest = _LONGEST * np.ptp(self.m, axis=1).max(axis=-1)
-        times = longest[:, None] / np.linalg.norm(missed, axis=-1).max(axis=-1).T
-        tens = 10 ** np.floor(np.log10(times))
-        return np.asarray(tens * np.rint(times / tens))  # a number of one digit, and noughts
+    def poses(self, step: float) -> Array:
+        """Return the poses (views, 4, 4) of the boards before the camera, as found by then."""
+        x = self._state(step)
+        return np.array([pose(R, T) for R, T in zip(x.R, x.T, strict=True)])
+
+    def _state(self, step: float) -> State:
+        whole = min(int(step), _STEPS - 1)
+        shared, poses = self._strides[whole]
+        part = step - whole
+        return take_step(self.states[whole], (part * shared, part * poses))
 
     @cached_property
     def way(self) -> Array:
@@ -82,17 +83,17 @@ def rms(misses: Array) -> float:
 
 
 def finding_model() -> Model:
-    """Make the model of a photograph's misses while the camera is found."""
+    """Make the model of the boards in the room and the misses, while the camera is found."""
     finding = Finding()
     n = len(finding.m) - 1
     settings = (
         Setting("step", "step", 0, _STEPS, 0.05, 0, "steps of the refinement, parts of them too"),
-        Setting("photograph", "photograph", 0, n, 1, 2, "which of the twelve photographs"),
+        Setting("photograph", "photograph", 0, n, 1, 0, "which of the twelve photographs"),
     )
     about = (
-        "The corners of one photograph, four times on the way from the closed form to the answer, "
-        "with arrows to where the camera predicts them. Beside them how far all corners are "
-        "missed: 3.73 px at the start, 0.374, 0.028 and 0.008 px after the steps."
+        "A camera in a room and its twelve boards, where they stood and where they are found, on "
+        "the way from the closed form to the answer. Beside them the misses of one photograph, and "
+        "how far all corners are missed: 3.73 px at the start, 0.374, 0.028 and 0.008 px then."
     )
 
     drags = {"step": lambda _, at: {"step": float(at[0])}}
@@ -102,55 +103,74 @@ def finding_model() -> Model:
 def _draw(finding: Finding, paper: Paper, values: Values) -> Drawing:
     step, i = values["step"], int(values["photograph"])
     camera, misses = finding.at(step)
-    frames = _frames(paper, finding, step, i)
-    curve = _curve(paper, finding, step, camera)
-    value = camera.parameters
-    missed = rms(misses)
+    found, true = finding.poses(step), course.poses()
+    column = [_photo(paper, finding, i, misses[i]), _curve(paper, finding, step)]
+    off = np.linalg.norm((found - true)[:, :3, 3], axis=-1).max()
     sentence = (
-        f"After {step:g} of {_STEPS} steps k₁ = {value['k1']:+.3f} and u₀ = {value['u0']:.1f} px; "
-        f"the {misses[..., 0].size} corners are missed by {_digits(missed)} px. "
+        f"After {step:g} of {_STEPS} steps the boards are misplaced by up to {off:.2g} mm, "
+        f"and k₁ = {camera.parameters['k1']:+.3f}; the "
+        f"{misses[..., 0].size} corners are missed by {_digits(rms(misses))} px. "
         f"Neighbouring arrows of all photographs agree by {alike(misses):.2f} of 1."
     )
-    return Drawing(paper.join((frames, curve)), sentence)
+    return Drawing(paper.join((_room(paper, _sheets(found), _sheets(true), i), column)), sentence)
 
 
-def _frames(paper: Paper, finding: Finding, step: float, i: int) -> Panel:
-    """Draw a photograph's corners four times: what is missed at the start and after each step.
+def _sheets(G: Array) -> Array:
+    """Return the corners (n, 4, 3) of the boards' paper before the camera, from poses (n, 4, 4)."""
+    border, _ = paper_and_squares(course.board())
+    return np.array([move(pose, border) for pose in G])
 
-    A frame whose step has begun shows how far it has come; later ones have no arrows yet. Each
-    keeps its scale, so that its arrows become shorter.
-    """
-    panel = paper.panel(_FRAMES, (0, 4), (0, 4), f"photograph {i} four times: its misses enlarged")
-    panel.segments([[[2, 0], [2, 4]], [[0, 2], [4, 2]]], MUTED, 1)
-    low, high = finding.m[i].min(axis=0), finding.m[i].max(axis=0)
-    unit = 1.47 * ((high - low) / _FRAMES).max() * np.array(_FRAMES) / 2  # half a frame
-    for frame in range(_STEPS + 1):
-        middle = np.array([1 + 2 * (frame % 2), 1.09 + 2 * (frame // 2)])
-        m = middle + (finding.m[i] - (low + high) / 2) / unit
-        draw_measured(panel, m, course.board())
-        if step > frame - 1:
-            camera, misses = finding.at(min(step, frame))
-            times = finding.enlarged[i, frame]
-            corner = middle // 2 * 2
-            _draw_within(panel, (corner, corner + 2), m, -times * misses[i] / unit)
-            k1 = f"k₁ = {camera.parameters['k1']:+.3f}".replace("-", "−")
-            panel.text(
-                middle + [-0.96, -0.9], f"all: {_digits(rms(misses))} px", ESTIMATED, size=16
-            )
-            panel.text(middle + [0.96, -0.9], k1, anchor="rm", size=14)
-            panel.text(middle + [-0.96, 0.82], f"× {times:.0f}", size=12)
-        else:
-            panel.text(middle + [-0.96, -0.9], f"step {frame}: not yet", size=14)
+
+def _room(paper: Paper, found: Array, true: Array, i: int) -> Panel:
+    """Draw the camera, its boards where they stood, and orange where they are found: one whole."""
+    floor = np.array(
+        [[[x, _FLOOR, z] for z in range(-100, 801, 100)] for x in range(-300, 301, 100)]
+    )
+    whole = np.array([floor[0, 0], floor[0, -1], floor[-1, -1], floor[-1, 0]])
+    shown = _from_aside(np.concatenate([whole, true.reshape(-1, 3)]))
+    (left, top), (right, bottom) = around(shown.min(0), shown.max(0), _ROOM, 1.02)
+    panel = paper.panel(_ROOM, (left, right), (top, bottom), "the room: twelve boards")
+    panel.polygons([_from_aside(whole)], _TILES)
+    for joints in (floor[:, [0, -1]], floor[[0, -1]].swapaxes(0, 1)):
+        panel.segments(_from_aside(joints), _JOINTS, 1)
+    panel.polygons(_from_aside(true * [1, 0, 1] + [0, _FLOOR, 0]), _SHADOW)
+    for boards, ink in ((true, WORLD), (found, ESTIMATED)):
+        for sheet in _from_aside(boards):
+            panel.line(sheet[_ROUND], mixed(ink, "#FFFFFF", 0.55), 0.8)
+    eye, pane = _from_aside(np.zeros(3)), _from_aside(_PANE)
+    panel.segments([[eye, corner] for corner in _from_aside(true[i])], CAMERA, 0.8)
+    G = course.poses()[i]
+    draw_sheet(panel, *(_from_aside(move(G, each)) for each in paper_and_squares(course.board())))
+    for k, (boards, ink, word) in enumerate(
+        ((true, WORLD, "as it stood"), (found, ESTIMATED, "as it is found"))
+    ):
+        panel.line(_from_aside(boards[i])[_ROUND], ink, 2.4)
+        at = [left + 12 * panel.pixel, top + (18 + 22 * k) * panel.pixel]
+        panel.text(at, word, ink, size=15)
+    panel.polygons([pane], mixed(CAMERA, "#FFFFFF", 0.6))
+    panel.segments([[eye, corner] for corner in pane], CAMERA, 1.8)
+    panel.line(pane[_ROUND], CAMERA, 1.8)
     return panel
 
 
-def _draw_within(panel: Panel, frame: tuple[Array, Array], starts: Array, ways: Array) -> None:
-    """Draw arrows in a frame; those that lead beyond it are pale, and end at its border."""
-    low, high = frame
-    ends = starts + ways
-    within = ((ends > low) & (ends < high)).all(axis=1)
-    panel.segments(clipped(starts[~within], ends[~within], frame), _PALE, 1)
-    panel.arrows(starts[within], ways[within], ESTIMATED, 1.2)
+def _from_aside(W: Array) -> Array:
+    """Project points (..., 3) onto the sheet (..., 2), all parallel."""
+    return np.asarray(W @ _VIEW[:2].T)
+
+
+def _photo(paper: Paper, finding: Finding, i: int, misses: Array) -> Panel:
+    """Draw a photograph's corners, with arrows to where they are predicted, enlarged."""
+    m = finding.m[i]
+    low, high = around(m.min(axis=0), m.max(axis=0), _PHOTO, 1.16)
+    times = _LONGEST * np.ptp(m, axis=0).max() / np.linalg.norm(misses, axis=-1).max()
+    tens = 10 ** np.floor(np.log10(times))
+    times = tens * np.rint(times / tens)  # a number of one digit, and noughts
+    panel = paper.panel(
+        _PHOTO, (low[0], high[0]), (low[1], high[1]), f"photograph {i}: its misses × {times:.0f}"
+    )
+    draw_measured(panel, m, course.board())
+    panel.arrows(m, -times * misses, ESTIMATED, 1.2)
+    return panel
 
 
 def _digits(pixels: float) -> str:
@@ -164,8 +184,8 @@ def alike(misses: Array) -> float:
     return float((one * next_).sum() / np.sqrt((one**2).sum() * (next_**2).sum()))
 
 
-def _curve(paper: Paper, finding: Finding, step: float, camera: Camera) -> Panel:
-    """Draw the RMS over the steps, with a logarithmic scale, and the camera of this step."""
+def _curve(paper: Paper, finding: Finding, step: float) -> Panel:
+    """Draw the RMS over the steps, with a logarithmic scale."""
     panel = paper.panel(
         _CURVE, (-0.35, _STEPS + 0.5), (1.3, -2.9), "RMS of all corners (px) against steps"
     )
@@ -182,9 +202,4 @@ def _curve(paper: Paper, finding: Finding, step: float, camera: Camera) -> Panel
     here = [step, np.interp(step, *way.T)]
     panel.mark(here, "estimated", 7)
     panel.grip("step", "the step, to be moved along the curve", here, 4)
-    names = (("αᵤ", "alpha_u", ".1f"), ("u₀", "u0", ".1f"), ("k₁", "k1", "+.3f"))
-    for row, (label, name, how) in enumerate(names):
-        number = f"{camera.parameters[name]:{how}}".replace("-", "−")
-        colour = ESTIMATED if name == "k1" else MUTED
-        panel.text([1.7, 1.0 - 0.34 * row], f"{label} = {number}", colour, size=15)
     return panel
