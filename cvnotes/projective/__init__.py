@@ -1,6 +1,6 @@
 """Chapter 1: points, lines and planes of projective space, at infinity too (notes 2b.1)."""
 
-from cvnotes.projective.lines import cross_ratio, join, lies_on, map_lines, meet
+from cvnotes.projective.lines import cross_ratio, join, meet
 from cvnotes.projective.points import (
     apply,
     direction_to_homogeneous,
@@ -10,7 +10,6 @@ from cvnotes.projective.points import (
 )
 from cvnotes.projective.space import (
     PLANE_AT_INFINITY,
-    line_of_planes,
     line_through,
     meet_plane,
 )
@@ -23,11 +22,8 @@ __all__ = [
     "same_up_to_scale",
     "join",
     "meet",
-    "lies_on",
-    "map_lines",
     "cross_ratio",
     "PLANE_AT_INFINITY",
     "line_through",
-    "line_of_planes",
     "meet_plane",
 ]

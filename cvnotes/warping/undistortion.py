@@ -18,7 +18,7 @@ from cvnotes.base import (
     rotation,
     target_size,
 )
-from cvnotes.camera import Camera, px_from_xy
+from cvnotes.camera import Camera
 from cvnotes.warping.interpolation import Border, Method, Sampler
 from cvnotes.warping.pixel_map import PixelMap, factored
 from cvnotes.warping.warp import backward_warp
@@ -75,32 +75,6 @@ def undistortion_map(
             xy /= z
         seen = camera.lens.distort.inside(camera.lens, xy.T)
         return A[:2, :2] @ seen.T + A[:2, 2:]
-
-    return PixelMap(columns)
-
-
-def distortion_map(camera: Camera, new_A: npt.ArrayLike | None = None) -> PixelMap:
-    """Map the pixels of the real camera's picture to those of an ideal camera's picture.
-
-    The inverse of `undistortion_map`: for a backward warp that puts a lens into a picture. It has
-    no closed form. Pixels that the lens model does not reach have no image.
-
-    Examples
-    --------
-    >>> from cvnotes.camera import Lens, intrinsics
-    >>> camera = Camera(intrinsics(800, 800, 320, 240), lens=Lens(k=(-0.25,)))
-    >>> distortion_map(camera)([695, 240]).round(9)
-    array([720., 240.])
-    """
-    new_A = camera.A if new_A is None else intrinsic_matrix(new_A, "new_A")
-
-    if _is_identity(camera, new_A):
-        return PixelMap(lambda m_h: m_h[:2])
-    to_sensor = np.linalg.inv(camera.A)[:2]
-
-    def columns(m_h: Array) -> Array:
-        ideal = camera.lens.undistort.inside(camera.lens, (to_sensor @ m_h).T)
-        return px_from_xy.inside(new_A, ideal).T
 
     return PixelMap(columns)
 
