@@ -8,11 +8,7 @@ from cvnotes.projective.points import (
     same_up_to_scale,
     to_homogeneous,
 )
-from cvnotes.projective.space import (
-    PLANE_AT_INFINITY,
-    line_through,
-    meet_plane,
-)
+from cvnotes.projective.space import PLANE_AT_INFINITY, line_through, meet_plane
 
 __all__ = [
     "to_homogeneous",

@@ -5,13 +5,7 @@ from functools import partial
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.base import (
-    Array,
-    DegenerateError,
-    ShapeError,
-    equally_many,
-    guarded,
-)
+from cvnotes.base import Array, DegenerateError, ShapeError, equally_many, guarded
 from cvnotes.projective.points import refuse_zero, vectors
 
 _ROUNDING = 1e-15  # what is left of a determinant of unit vectors that should be 0
