@@ -51,7 +51,8 @@ def calibration_json(
     """Spell a calibration as JSON, with photographs, and a note to whoever opens it."""
     if files and len(files) != len(result["poses"]):
         raise CvnotesError(f"files: expected {len(result['poses'])} names, got {len(files)}")
-    names, of_views, shape = (result.get(key) for key in ("names", "_covariance_of_views", "shape"))
+    names, shape = result["names"], result.get("shape")
+    of_views = result.get("_covariance_of_views")
     keys: dict[str, Any] = {
         "format": FORMAT,
         "version": VERSION,
