@@ -62,7 +62,8 @@ def undistortion_map(
     array([695., 240.])
     """
     new_A = camera.A if new_A is None else intrinsic_matrix(new_A, "new_A")
-    if R is None and _is_identity(camera, new_A):
+    # What moves nothing must not move it by rounding either.
+    if R is None and camera.lens.is_ideal and (new_A == camera.A).all():
         return PixelMap(lambda m_h: m_h[:2])
     to_real = np.eye(3) if R is None else _one_rotation(R).T
     ray, A = to_real @ np.linalg.inv(new_A), camera.A
@@ -202,8 +203,3 @@ def _one_rotation(R: npt.ArrayLike) -> Array:
     if R.ndim != 2:
         raise ShapeError(f"R: expected one rotation (3, 3), got {R.shape}")
     return R
-
-
-def _is_identity(camera: Camera, new_A: Array) -> bool:
-    """Return whether nothing moves; then it must not move by rounding either."""
-    return camera.lens.is_ideal and bool((new_A == camera.A).all())

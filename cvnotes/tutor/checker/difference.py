@@ -6,7 +6,6 @@ from functools import partial
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from cvnotes.base import Array, CvnotesError
 from cvnotes.tutor.checker.equality import AS_NEAR, Same, close, same_motion, tolerance, up_to_scale
@@ -223,9 +222,11 @@ def _order(wrong: _Wrong) -> Found | None:
     for name, sentence, *changes in _other_ways_round(wrong, dimensions):
         if any(wrong.right_after(change) for change in changes):
             return Found(name, sentence)
-    if dimensions == {2} and wrong.equal(_sorted_rows):
+    if dimensions == {2} and wrong.equal(lambda a: a[np.lexsort(np.round(a, 6).T)]):
         return Found("rows in another order", "The rows are the right ones, in another order.")
-    if all(answer.size > 1 for answer, _ in wrong.pairs) and wrong.equal(_sorted):
+    if all(answer.size > 1 for answer, _ in wrong.pairs) and wrong.equal(
+        lambda a: np.sort(a, None)
+    ):
         return Found("another order", "The numbers are the right ones, in another order.")
     return None
 
@@ -243,34 +244,20 @@ def _other_ways_round(wrong: _Wrong, dimensions: set[int]) -> Iterator[tuple[Any
         return
     for axis, what in ((-1, "columns" if dimensions != {1} else "entries"), (0, "rows")):
         right = f"The {what} are the right ones"
-        opposite, on, back = (
-            partial(np.flip, axis=axis),
-            partial(np.roll, shift=1, axis=axis),
-            partial(np.roll, shift=-1, axis=axis),
-        )
-        yield f"{what} in the opposite order", f"{right}, in the opposite order.", opposite
-        yield f"{what} moved on", f"{right}, moved on by one place.", on, back
-    yield (
-        "reshaped for transposed",
-        (
-            "The numbers are right, but in the wrong places: reshape fills row by row, it does not "
-            "transpose. Take .T."
-        ),
-        _refilled,
+        flip, roll = partial(np.flip, axis=axis), partial(np.roll, axis=axis)
+        yield f"{what} in the opposite order", f"{right}, in the opposite order.", flip
+        steps = partial(roll, shift=1), partial(roll, shift=-1)
+        yield f"{what} moved on", f"{right}, moved on by one place.", *steps
+    sentence = (
+        "The numbers are right, but in the wrong places: reshape fills row by row, it does not "
+        "transpose. Take .T."
     )
+    yield "reshaped for transposed", sentence, _refilled
 
 
 def _refilled(a: Array) -> Array:
     """Undo a reshape that stands where a transposition should."""
     return a.ravel().reshape(a.shape[::-1]).T if a.ndim == 2 else a
-
-
-def _sorted(x: Array) -> Array:
-    return np.sort(x, None)
-
-
-def _sorted_rows(x: Array) -> Array:
-    return np.asarray(x[np.lexsort(np.round(x, 6).T)])
 
 
 def _factor(wrong: _Wrong) -> Found | None:
@@ -481,7 +468,7 @@ def _entries(wrong: _Wrong) -> str:
     places = np.any([_wrong_entries(*pair) for pair in wrong.aligned], axis=0)
     if places.ndim > 2 or not 0 < places.sum() <= max(1, places.size // 3):
         return ""
-    named = [_index(i) for i in np.argwhere(places)]
+    named = (f"[{', '.join(map(str, i))}]" for i in np.argwhere(places).tolist())
     return f" in {', '.join(named)}"
 
 
@@ -502,10 +489,6 @@ def _wrong_entries(answer: Array, right: Array) -> Array:
     return ~np.asarray(
         (np.abs(answer - right) <= scale) | (np.isnan(answer) & np.isnan(right)) | (answer == right)
     )
-
-
-def _index(i: npt.NDArray[np.intp]) -> str:
-    return f"[{', '.join(map(str, i.tolist()))}]"
 
 
 def _some(wrong: _Wrong) -> Found | None:

@@ -131,10 +131,6 @@ def _of_slips(exercise: Exercise, seed: int) -> Iterator[str]:
             yield f"{slip} passes"
 
 
-def _without_the_last(x: Array) -> Array:
-    return x[..., :-1] if x.ndim else x * 2
-
-
 # Slips of an answer as a whole, by what they do to it.
 SLIPS: dict[str, Callable[[Array], Array]] = {
     "the right answer times −1": np.negative,
@@ -145,7 +141,7 @@ SLIPS: dict[str, Callable[[Array], Array]] = {
     "the right answer in reverse": lambda x: np.flip(x),
     "the right answer moved on by one place": lambda x: np.roll(x, 1),
     "the sizes of the right answer without signs": np.abs,
-    "the right answer without its last column": _without_the_last,
+    "the right answer without its last column": lambda x: x[..., :-1] if x.ndim else x * 2,
     "the right answer with one entry 1 % larger": lambda x: _one_larger(x),
 }
 
