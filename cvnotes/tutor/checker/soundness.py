@@ -90,14 +90,11 @@ def _of_the_text(exercise: Exercise) -> Iterator[str]:
                 break
     if not 2 <= len(set(exercise.hints)) <= 3:
         yield "two or three different hints are wanted"
-    sentences = [m.sentence for m in exercise.misconceptions]
-    for what, texts in (
-        ("names", [m.name for m in exercise.misconceptions]),
-        ("sentences", sentences),
-    ):
-        if len(set(texts)) < len(texts):
-            yield f"two mistakes have the same {what[:-1]}"
-    for text in [exercise.task, *sentences]:
+    listed = exercise.misconceptions
+    for what in ("name", "sentence"):
+        if len({getattr(mistake, what) for mistake in listed}) < len(listed):
+            yield f"two mistakes have the same {what}"
+    for text in [exercise.task, *(mistake.sentence for mistake in listed)]:
         if not text.endswith((".", "?", ".)", "”")):
             yield f"no sentence: {text[-40:]!r}"
 
