@@ -282,20 +282,6 @@ FUNCTIONS = [
         "projective.meet",
     ),
     function(
-        projective.lies_on,
-        {
-            "x": (np.array([1.0, 2, 1]), EITHER_SPACE),
-            "line": (np.array([3.0, 1, 1]), EITHER_SPACE),
-            "atol": (1e-12, ONE),
-        },
-        "projective.lies_on",
-    ),
-    function(
-        projective.map_lines,
-        {"H": (H, MATRIX), "lines": (np.array([[3.0, 1, 1]]), EITHER_SPACE)},
-        "projective.map_lines",
-    ),
-    function(
         projective.cross_ratio,
         {
             n: (np.array([t, 1.0, 1]), EITHER_SPACE)
@@ -310,14 +296,6 @@ FUNCTIONS = [
             for n, x in zip("ab", ([1.0, 0, 0, 1], [0, 1.0, 0, 1]), strict=True)
         },
         "projective.line_through",
-    ),
-    function(
-        projective.line_of_planes,
-        {
-            n: (np.array(x), POINT4)
-            for n, x in zip("pq", ([1.0, 0, 0, 1], [0, 1.0, 0, 1]), strict=True)
-        },
-        "projective.line_of_planes",
     ),
     function(
         projective.meet_plane,
@@ -477,11 +455,6 @@ FUNCTIONS = [
         {"v": (TRIANGLE, several(2))},
         "vanishing.intrinsics_from_vanishing_points",
     ),
-    function(
-        vanishing.normal_from_horizon,
-        {"A": (A, SINGLE), "line": (np.array([0.0, 1, -240]), several(3))},
-        "vanishing.normal_from_horizon",
-    ),
     # pictures
     function(
         interpolation.interpolate,
@@ -509,12 +482,6 @@ FUNCTIONS = [
         warping.undistortion_map,
         {"new_A": (A, SINGLE), "R": (R, SINGLE)},
         "warping.undistortion_map",
-        camera=CAMERA,
-    ),
-    function(
-        warping.distortion_map,
-        {"new_A": (A, SINGLE)},
-        "warping.distortion_map",
         camera=CAMERA,
     ),
     function(

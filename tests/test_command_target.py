@@ -1,17 +1,12 @@
-import argparse
-
 import pytest
 
-from cvnotes.commands.target import add_parser
+from cvnotes.commands.cli import main
 from cvnotes.targets import Chessboard
 
 
 def cvnotes(*arguments):
     """Run the command and give its exit code, as the command line would."""
-    parser = argparse.ArgumentParser(prog="cvnotes")
-    add_parser(parser.add_subparsers(required=True))
-    args = parser.parse_args([str(argument) for argument in arguments])
-    return args.run(args)
+    return main([str(argument) for argument in arguments])
 
 
 def test_the_board_asked_for_is_written_and_the_user_told_to_check_the_ruler(tmp_path, capsys):

@@ -176,10 +176,8 @@ def test_no_mutant_passes_and_none_gets_a_name_that_is_not_its_own(name):
         # NaN has many causes, and so has an exception: what is said of them is said of them alone;
         # and how near an answer comes differs from one input to the next
         if report.misconception not in (None, "nearly") and _is_finite(report):
-            # A slip near a bound may stay without its name on one of the other data, and no more.
-            names = [r.misconception for r in again if not r.passed and _is_finite(r)]
-            assert set(names) <= {report.misconception, None}, (report.misconception, names, code)
-            assert names.count(None) <= 1, (report.misconception, names, code)
+            names = {r.misconception for r in again if not r.passed and _is_finite(r)}
+            assert names <= {report.misconception}, (report.misconception, names, code)
 
 
 def test_there_are_thousands_of_them():

@@ -1,6 +1,5 @@
 """Grading: right notebooks score all points, broken and hostile ones cost their own row only."""
 
-import argparse
 import csv
 import json
 import os
@@ -15,7 +14,7 @@ import pytest
 from conftest import processor_time
 from test_exercises_second import source_of
 
-from cvnotes.commands.grade import add_parser
+from cvnotes.commands.cli import main
 from cvnotes.learn import EXERCISES, add_exercises
 from cvnotes.learn.exercises import CHAPTERS, COURSE
 from cvnotes.tutor.checker import sandbox
@@ -92,10 +91,7 @@ def graded(folder, **limits):
 
 
 def command(*arguments):
-    parser = argparse.ArgumentParser(prog="cvnotes")
-    add_parser(parser.add_subparsers(required=True))
-    args = parser.parse_args(["grade", *map(str, arguments)])
-    return args.run(args)
+    return main(["grade", *map(str, arguments)])
 
 
 def run_here_if_harmless(cells, seed, course, *others):

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
-from scipy.linalg import null_space
+from test_theorems import lies_on
 
 from cvnotes.base import CvnotesError, DegenerateError, InputTypeError, ShapeError
 from cvnotes.camera import Camera, intrinsics, look_at
@@ -12,10 +12,7 @@ from cvnotes.projective import (
     direction_to_homogeneous,
     from_homogeneous,
     join,
-    lies_on,
-    line_of_planes,
     line_through,
-    map_lines,
     meet,
     meet_plane,
     same_up_to_scale,
@@ -106,8 +103,8 @@ def test_a_line_of_space_meets_a_plane_in_a_point_of_both(a, b, p):
         assert np.linalg.matrix_rank(np.array([a, b, point]) / np.abs(point).max()) <= 2
 
 
-def test_parallel_planes_share_a_line_at_infinity():
-    L = line_of_planes([1, 2, 3, 4], [1, 2, 3, -9])
+def test_a_line_at_infinity_meets_other_planes_there():
+    L = line_through([2, -1, 0, 0], [3, 0, -1, 0])  # of all planes (1, 2, 3, d)
     with pytest.raises(DegenerateError, match="lies in the plane"):
         meet_plane(L, PLANE_AT_INFINITY)
     x = meet_plane(L, [1, 0, 0, 0])
@@ -124,17 +121,10 @@ def test_parallel_lines_of_space_meet_on_the_plane_at_infinity():
         assert lies_on(end, PLANE_AT_INFINITY)
 
 
-def test_a_line_is_the_same_from_its_points_and_from_its_planes():
-    a, b = RNG.normal(size=(2, 4))
-    p, q = null_space([a, b]).T  # two planes that contain both
-    assert same_up_to_scale(line_of_planes(p, q), line_through(a, b))
-
-
 @pytest.mark.parametrize(
     ("call", "words"),
     [
         (lambda: line_through([1, 2, 3, 4], [-2, -4, -6, -8]), "points coincide"),
-        (lambda: line_of_planes([1, 2, 3, 4], [0.1, 0.2, 0.3, 0.4]), "planes coincide"),
     ],
 )
 def test_what_is_not_determined_is_refused_in_words(call, words):
@@ -143,14 +133,6 @@ def test_what_is_not_determined_is_refused_in_words(call, words):
 
 
 # --- under a map ---------------------------------------------------------------------------------
-
-
-def test_incidence_survives_a_map_of_the_plane():
-    a, b = RNG.normal(size=(2, 3))
-    moved = map_lines(H2, join(a, b))
-    assert lies_on([H2 @ a, H2 @ b], moved).all()
-    assert same_up_to_scale(moved, join(H2 @ a, H2 @ b))
-    assert not lies_on(H2 @ a, H2 @ join(a, b), atol=1e-3)  # lines do not move as points do
 
 
 def test_a_pixels_line_spans_a_plane_through_the_camera():
@@ -217,9 +199,6 @@ def test_coinciding_points_give_0_or_1_or_infinity_and_three_of_them_nothing():
         (lambda: join([1, 2], [1, 2, 3]), ShapeError, r"a: expected .*\(\.\.\., 3\), got \(2,\)"),
         (lambda: join([1, np.nan, 3], [1, 2, 3]), CvnotesError, "a contains NaN"),
         (lambda: join("abc", [1, 2, 3]), InputTypeError, "numeric"),
-        (lambda: lies_on([1, 2, 3], [1, 2, 3, 4]), ShapeError, "not of one space"),
-        (lambda: map_lines(np.eye(4), [1, 2, 3]), ShapeError, r"H: expected shape \(3, 3\)"),
-        (lambda: map_lines(np.zeros((3, 3)), [1, 2, 3]), DegenerateError, "H is singular"),
     ],
 )
 def test_unusable_input_is_refused_in_words(call, error, words):

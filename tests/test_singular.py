@@ -8,7 +8,6 @@ from cvnotes.calibration import calibrate, intrinsics_from_b
 from cvnotes.calibration.refinement import covariance, pose_covariance, solve_by_schur
 from cvnotes.camera import Camera, intrinsics, pose, rotation_from_vector
 from cvnotes.homography import four_points_h9_one
-from cvnotes.projective import map_lines
 from cvnotes.targets import Chessboard
 
 
@@ -31,7 +30,6 @@ def numpy_that_cannot_raise(monkeypatch):
 @pytest.mark.parametrize(
     ("call", "why"),
     [
-        (lambda: map_lines(np.zeros((3, 3)), [1, 0, 0]), "H is singular"),
         (lambda: solve_dense(np.zeros((3, 3)), 0.0), "normal equations are singular"),
         (lambda: intrinsics_from_b([-1, 0, -1, 0, 0, -1]), "B is not positive definite"),
         (lambda: four_points_h9_one(*[[[0, 0], [1, 1], [2, 2], [3, 3]]] * 2), "8×8 system"),

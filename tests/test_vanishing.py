@@ -14,7 +14,6 @@ from cvnotes.camera import (
     intrinsics,
     intrinsics_from_vanishing_points,
     look_at,
-    normal_from_horizon,
     rotation_from_vector,
     vanishing_point,
 )
@@ -163,12 +162,6 @@ def test_the_vanishing_points_of_a_plane_share_its_horizon():
     line = horizon(CAMERA, [0, 1, 0])
     for one, other in combinations(v_h, 2):
         assert same_up_to_scale(join(one, other), line)
-
-
-def test_the_horizon_gives_the_planes_normal_back():
-    normal = np.array([0.2, -0.9, 0.3]) / np.linalg.norm([0.2, -0.9, 0.3])
-    found = normal_from_horizon(CAMERA.A, horizon(CAMERA, normal))
-    np.testing.assert_allclose(found, CAMERA.R @ normal, atol=1e-12)
 
 
 # --- the camera ----------------------------------------------------------------------------------

@@ -228,10 +228,6 @@ def student(z: float, freedom: float) -> float:
     >>> [round(student(1.96, n), 2) for n in (4, 14, 1000)]
     [2.77, 2.14, 1.96]
     """
-    terms = (
-        z**3 + z,
-        5 * z**5 + 16 * z**3 + 3 * z,
-        3 * z**7 + 19 * z**5 + 17 * z**3 - 15 * z,
-    )
+    terms = (z**3 + z, 5 * z**5 + 16 * z**3 + 3 * z, 3 * z**7 + 19 * z**5 + 17 * z**3 - 15 * z)
     scaled = zip(terms, (4, 96, 384), strict=True)
     return z + sum(t / (w * freedom**i) for i, (t, w) in enumerate(scaled, 1))

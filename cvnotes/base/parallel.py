@@ -5,20 +5,12 @@ import sys
 import threading
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import Future, wait
 from queue import SimpleQueue
-from typing import Any, Generic, TypeVar
+from typing import Any, TypeVar
 
 T = TypeVar("T")
 R = TypeVar("R")
-
-
-class _Answer(Generic[R]):
-    """What a call gave or raised, once it is there."""
-
-    def __init__(self) -> None:
-        self.ready = threading.Event()
-        self.value: R | None = None
-        self.error: BaseException | None = None
 
 
 def in_order(function: Callable[[T], R], items: Iterable[T], workers: int = 0) -> Iterator[R]:
@@ -53,19 +45,18 @@ def in_order(function: Callable[[T], R], items: Iterable[T], workers: int = 0) -
         while (task := tasks.get()) is not None:
             item, answer = task
             try:
-                answer.value = function(item)
+                answer.set_result(function(item))
             except BaseException as error:  # raised where the result is asked for
-                answer.error = error
-            answer.ready.set()
+                answer.set_exception(error)
 
     started = _start(work, workers)
     if not started:
         yield from map(function, items)
         return
-    waiting: deque[_Answer[R]] = deque()
+    waiting: deque[Future[R]] = deque()
     try:
         for item in items:
-            waiting.append(_Answer())
+            waiting.append(Future())
             tasks.put((item, waiting[-1]))
             if len(waiting) > started:
                 yield _given(waiting.popleft())
@@ -86,10 +77,7 @@ def _start(work: Callable[[], None], workers: int) -> int:
     return workers
 
 
-def _given(answer: _Answer[R]) -> R:
-    # On Windows a wait without end would not see Ctrl-C.
-    while not answer.ready.wait(0.5):
-        pass
-    if answer.error is not None:
-        raise answer.error
-    return answer.value  # type: ignore[return-value]
+def _given(answer: "Future[R]") -> R:
+    while not answer.done():  # on Windows a wait without end would not see Ctrl-C
+        wait([answer], timeout=0.5)
+    return answer.result()

@@ -1,9 +1,11 @@
 """Files written whole or not at all."""
 
+import csv
+import io
 import os
 import secrets
 import time
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from contextlib import ExitStack, suppress
 from importlib import import_module
 from pathlib import Path
@@ -73,6 +75,19 @@ def harmless(text: str) -> str:
     "'=1+1"
     """
     return f"'{text}" if text[:1] in ("=", "+", "-", "@", "\t", "\r") else text
+
+
+def as_csv(rows: Iterable[Iterable[str]]) -> str:
+    r"""Write a table for spreadsheets and other programs, its texts kept `harmless`.
+
+    Examples
+    --------
+    >>> as_csv([["file", "note"], ["=1+1.png", "a, b"]])
+    'file,note\n\'=1+1.png,"a, b"\n'
+    """
+    text = io.StringIO()
+    csv.writer(text, lineterminator="\n").writerows(map(harmless, row) for row in rows)
+    return text.getvalue()
 
 
 def write_whole(contents: Mapping[Path, bytes]) -> None:

@@ -12,10 +12,10 @@ from typing import Any
 
 import numpy as np
 
-from cvnotes.base import Array, CvnotesError, DegenerateError, Minimum
+from cvnotes.base import Array, CvnotesError, DegenerateError
 from cvnotes.calibration.correspondences import Correspondences
 from cvnotes.calibration.refinement import (
-    NormalEquations,
+    Optimum,
     Problem,
     State,
     minimise,
@@ -168,11 +168,11 @@ def shaped(
     problem: Problem,
     data: Correspondences,
     kind: str,
-    flat: Minimum[State, NormalEquations],
+    flat: Optimum,
     hold: Array | None = None,
     *,
     tolerance: float = 1e-12,
-) -> tuple[Problem, Minimum[State, NormalEquations]]:
+) -> tuple[Problem, Optimum]:
     """Go on from the minimum of a flat board to that of its shape.
 
     `hold` is what holds it back, if that is known already; for `tolerance` see `minimise`.
@@ -231,7 +231,7 @@ def _held(noise: float, s: Array, determined: Array, before: Array) -> Array:
 
 
 def shape_found(
-    free: Problem, data: Correspondences, kind: str, best: Minimum[State, NormalEquations]
+    free: Problem, data: Correspondences, kind: str, best: Optimum
 ) -> tuple[BoardShape, Correspondences]:
     """Return the shape in the units of the board as it was given, and the data on such a board."""
     W = free.board(best.x.shared)

@@ -16,19 +16,11 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from cvnotes.base import (
-    Array,
-    ConvergenceError,
-    CvnotesError,
-    DegenerateError,
-    Minimum,
-    image_size,
-    student,
-)
+from cvnotes.base import Array, ConvergenceError, CvnotesError, DegenerateError, image_size, student
 from cvnotes.calibration.board_shape import is_board, shaped
 from cvnotes.calibration.correspondences import Correspondences, PointSets
 from cvnotes.calibration.jackknife import Influence, undetermined
-from cvnotes.calibration.refinement import NormalEquations, Problem, State
+from cvnotes.calibration.refinement import Optimum, Problem
 from cvnotes.calibration.refinement import covariance as covariance_by_noise
 from cvnotes.calibration.starts import Search
 from cvnotes.calibration.thresholds import ALIKE_LEFT_OUT, AS_WELL, HOPELESS, SURE
@@ -277,9 +269,7 @@ class _Tried:
     size: tuple[int, int]
     skew: bool
     lenses: Sequence[str]
-    flat: dict[str, tuple[Problem, Minimum[State, NormalEquations]] | None] = field(
-        default_factory=dict
-    )
+    flat: dict[str, tuple[Problem, Optimum] | None] = field(default_factory=dict)
     known: list[Candidate] = field(default_factory=list)
 
     def choice(self, lenses: Sequence[str], board: str) -> Choice:
@@ -319,14 +309,11 @@ class _Tried:
         except CvnotesError:  # this model has no camera here
             return None
 
-    def _estimated(self, problem: Problem) -> Minimum[State, NormalEquations]:
+    def _estimated(self, problem: Problem) -> Optimum:
         """Estimate a camera from all views of a flat board, as `calibrate` does by itself."""
         fitted = [of_flat[1].cost for of_flat in self.flat.values() if of_flat]
         search = Search(
-            problem,
-            tolerance=_CLOSE,
-            patience=_PATIENCE,
-            rival=min(fitted, default=np.inf),
+            problem, tolerance=_CLOSE, patience=_PATIENCE, rival=min(fitted, default=np.inf)
         )
         for near, end in filter(None, self.flat.values()):
             if near.model is problem.model and not search.resumes:
@@ -340,9 +327,7 @@ class _Tried:
         return search.best()
 
 
-def _judged(
-    lens: str, board: str, problem: Problem, best: Minimum[State, NormalEquations]
-) -> Candidate:
+def _judged(lens: str, board: str, problem: Problem, best: Optimum) -> Candidate:
     """Return the candidate: how it predicts views left out, and how well they determine it."""
     if not best.converged:
         raise ConvergenceError(f"the refinement with lens {lens!r} did not converge")

@@ -90,8 +90,6 @@ def pose_from_view(
             f"one picture has points (n, 3) and pixels (n, 2), got {W.shape} and {m.shape}"
         )
     paired(W, m, ("target_points", "image_points"), at_least=4)
-    if np.abs(W).max() > 1e100:
-        raise CvnotesError("target_points: coordinates beyond 1e100 cannot be computed with")
     if W.shape[1] == 2:
         W = np.column_stack([W, np.zeros(len(W))])
     xy = _ideal(camera, m)

@@ -3,7 +3,7 @@
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.base import Array, CvnotesError, DegenerateError, ShapeError, paired, points
+from cvnotes.base import Array, DegenerateError, ShapeError, paired, points
 from cvnotes.homography.refinement import refine_projection
 from cvnotes.projective import to_homogeneous
 from cvnotes.projective.points import apply_similarity, inverse_similarity, normaliser
@@ -45,8 +45,6 @@ def _several(W: npt.ArrayLike) -> Array:
     W = points(W, "W", 3)
     if W.ndim != 2 or not len(W):
         raise ShapeError(f"W: expected points (n, 3) of one picture, got {W.shape}")
-    if np.abs(W).max() > 1e100:
-        raise CvnotesError("W: coordinates beyond 1e100 cannot be computed with")
     return W
 
 

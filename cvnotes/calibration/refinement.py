@@ -493,6 +493,10 @@ class CornersFirst(NormalEquations):
         return np.concatenate([np.diagonal(self.inverse)[at], mean]), corners
 
 
+# Where a minimisation ended: the state, its cost and its normal equations.
+Optimum = Minimum[State, NormalEquations]
+
+
 def solve_by_schur(system: NormalEquations, damping: float) -> tuple[tuple[Array, Array], float]:
     """Solve the damped normal equations, the poses eliminated by the Schur complement S.
 
@@ -578,7 +582,7 @@ def minimise(
     tolerance: float = 1e-12,
     steps: int = 100,
     patience: int | None = None,
-) -> Minimum[State, NormalEquations]:
+) -> Optimum:
     """Minimise the reprojection error from a start, by Levenberg–Marquardt.
 
     For the numbers see `levenberg_marquardt`; of a lens that has a valley in place of a minimum,
@@ -617,7 +621,7 @@ def _descend(
     *,
     steps: int = 100,
     patience: int | None = None,
-) -> Minimum[State, NormalEquations]:
+) -> Optimum:
     return levenberg_marquardt(
         start,
         partial(problem.linearise, corners_first=problem.corners_first),
@@ -633,7 +637,7 @@ def _descend(
 
 def _minimise_in_valley(
     problem: Problem, start: State, tolerance: float, patience: int | None
-) -> Minimum[State, NormalEquations]:
+) -> Optimum:
     """Minimise where coefficients nearly cancel each other, as in a quotient.
 
     Along the valley where they do, noise would carry the coefficients away for ever. A ridge,
@@ -654,7 +658,7 @@ def _minimise_in_valley(
 FEW_VIEWS = 8
 
 
-def typical_cost(problem: Problem, found: Minimum[State, NormalEquations]) -> float:
+def typical_cost(problem: Problem, found: Optimum) -> float:
     """Return the mean squared distance (px²) of corners from their places.
 
     Of many views that of the median one: a few may show something else, in no pose at all.

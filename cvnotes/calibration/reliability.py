@@ -9,29 +9,10 @@ import numpy as np
 import numpy.typing as npt
 
 from cvnotes.base import Array
+from cvnotes.calibration import thresholds
 from cvnotes.calibration.doubts import Corner, Doubt, View, Views
 from cvnotes.calibration.refinement import CORRELATED, autocorrelation
 from cvnotes.calibration.result import Calibration
-from cvnotes.calibration.thresholds import (
-    APART,
-    BY_CHANCE,
-    FLAT,
-    MISFIT,
-    MOVED,
-    NEGLIGIBLE,
-    OF_PICTURE,
-    OUTLIER,
-    PARALLEL,
-    PART_ASTRAY,
-    PIXEL_RATIO,
-    TIMES_MEDIAN,
-    TIMES_TYPICAL,
-    TOO_SMALL,
-    UNCERTAIN,
-    UNDETERMINED,
-    UNKNOWN,
-    WEAK,
-)
 from cvnotes.calibration.zhang import constraints
 from cvnotes.camera import AnyLens, xy_from_px
 
@@ -99,22 +80,17 @@ class Diagnostics:
         They are of the points `board`, (n, 3) or (n_views, n, 3). `freedom` is that of the
         residuals; without it their autocorrelation is not looked at.
         """
-        may_matter, choice = found.view_rms.max() > MOVED * max(found.size), found.choice
+        may_matter, choice = found.view_rms.max() > thresholds.MOVED * max(found.size), found.choice
+        same = ("A", "lens", "size", "poses", "std", "view_rms", "converged")
+        boards = found.shape is not None or (choice is not None and len(choice.by_board) > 1)
         return Diagnostics(
-            A=found.A,
-            lens=found.lens,
-            size=found.size,
-            poses=found.poses,
-            std=found.std,
-            view_rms=found.view_rms,
+            **{name: getattr(found, name) for name in same},
             distances=np.sqrt(residuals[..., 0] ** 2 + residuals[..., 1] ** 2),
             corners=corners,
-            converged=found.converged,
             autocorrelation=0.0 if freedom is None else autocorrelation(residuals, freedom),
             by_radius=by_radius(residuals, corners, found.A[:2, 2]),
             together=missed_together(residuals, board) if may_matter else 0.0,
-            shape_tried=found.shape is not None
-            or (choice is not None and len(choice.by_board) > 1),
+            shape_tried=boards,
             lens_tried=choice is not None and len(choice.by_lens) > 1,
         )
 
@@ -168,7 +144,7 @@ def by_radius(residuals: Array, corners: Array, centre: Array) -> float:
         seen = np.isfinite(squares_of) & (squares_of > 0)
         squares_of, outwards, r2 = squares_of[seen], outwards[seen], r2[seen]
     n, squares = squares_of.size, float(squares_of.sum())
-    if n < 2 * _POWERS or squares < n * NEGLIGIBLE**2 or not r2.max() > 0:
+    if n < 2 * _POWERS or squares < n * thresholds.NEGLIGIBLE**2 or not r2.max() > 0:
         return 0.0
     # Normal equations of r, r³, …, the largest radius being 1: sums of powers of r² alone. (A QR
     # of all corners would take longer than the rest of the judgement.)
@@ -179,7 +155,7 @@ def by_radius(residuals: Array, corners: Array, centre: Array) -> float:
     N = powers[:-1] @ powers[1:].T
     g = powers[:-1] @ outwards.ravel() / np.sqrt(largest)
     part = float(g @ np.linalg.lstsq(N, g, rcond=1e-13)[0])
-    return part / squares if part > _POWERS * BY_CHANCE * squares / (2 * n) else 0.0
+    return part / squares if part > _POWERS * thresholds.BY_CHANCE * squares / (2 * n) else 0.0
 
 
 def missed_together(residuals: Array, board: Array) -> float:
@@ -273,20 +249,20 @@ def judge(evidence: Diagnostics) -> tuple[tuple[Doubt, ...], bool]:
 def _undetermined(e: Diagnostics) -> Iterator[str]:
     if not e.converged:
         yield "the refinement stopped before it reached a minimum; the answer is only a start"
-    if e.tilt_between < PARALLEL:
+    if e.tilt_between < thresholds.PARALLEL:
         yield (
             f"all boards are nearly parallel (at most {e.tilt_between:.1f}° between two), which "
             f"leaves the focal length open: {_ADVICE}"
         )
-    elif e.determinacy < UNDETERMINED:
+    elif e.determinacy < thresholds.UNDETERMINED:
         yield (
             f"these views do not determine the camera (V is singular to {e.determinacy:.4f}): "
             f"{_ADVICE}"
         )
-    elif e.focal_uncertainty > UNKNOWN:
+    elif e.focal_uncertainty > thresholds.UNKNOWN:
         yield f"the focal length is known to {e.focal_uncertainty:.0%} only: {_ADVICE}"
     ratio = e.A[1, 1] / e.A[0, 0]
-    if not 1 / PIXEL_RATIO < ratio < PIXEL_RATIO:
+    if not 1 / thresholds.PIXEL_RATIO < ratio < thresholds.PIXEL_RATIO:
         yield (
             f"pixels {ratio:.2g} times as high as wide are unlikely: are rows and columns of the "
             "board swapped, or its squares not square?"
@@ -299,12 +275,12 @@ def _weak(e: Diagnostics) -> Iterator[str]:
             "two views give as many constraints as A has unknowns, so nothing checks the answer: "
             "add views"
         )
-    elif e.tilt_between < FLAT or e.determinacy < WEAK:
+    elif e.tilt_between < thresholds.FLAT or e.determinacy < thresholds.WEAK:
         yield (
             f"the boards' tilts (at most {e.tilt_between:.0f}° between two) determine the focal "
             f"length only weakly: {_ADVICE}"
         )
-    elif e.focal_uncertainty > UNCERTAIN:
+    elif e.focal_uncertainty > thresholds.UNCERTAIN:
         yield (
             f"the focal length has a standard deviation of {e.focal_uncertainty:.1%}: add views, "
             "fill more of the picture, or tilt the board more"
@@ -337,15 +313,15 @@ def misfits(view_rms: Array) -> npt.NDArray[np.intp]:
     >>> misfits(np.array([0.1, 0.2, 3.0, 0.15])).tolist()
     [2]
     """
-    misfit = view_rms > MISFIT
+    misfit = view_rms > thresholds.MISFIT
     if misfit.any():
-        misfit &= view_rms > TIMES_TYPICAL * np.median(view_rms)
+        misfit &= view_rms > thresholds.TIMES_TYPICAL * np.median(view_rms)
     return np.flatnonzero(misfit)
 
 
 def _badly_fitted(e: Diagnostics) -> Iterator[str]:
     """Find views and whole sets that no camera of this kind explains."""
-    limit = OF_PICTURE * max(e.size)
+    limit = thresholds.OF_PICTURE * max(e.size)
     if e.view_rms.max() > limit and e.typical_rms > limit:
         yield (
             f"the corners are {e.typical_rms:.1f} px away from where the model puts them, in a "
@@ -362,7 +338,7 @@ def _badly_fitted(e: Diagnostics) -> Iterator[str]:
             _views(bad),
             View(worst),
         )
-    if e.by_radius > TOO_SMALL:
+    if e.by_radius > thresholds.TOO_SMALL:
         yield (
             f"corners miss their places outwards or inwards by their distance from the middle "
             f"({e.by_radius:.0%} of the residuals): this lens has too few coefficients; let views "
@@ -380,7 +356,7 @@ def _badly_fitted(e: Diagnostics) -> Iterator[str]:
 
 def _is_no_noise(e: Diagnostics) -> bool:
     """Return whether corners miss their places together, by more than bent boards do."""
-    most = MOVED * max(e.size)
+    most = thresholds.MOVED * max(e.size)
     return e.together > most or (e.autocorrelation > CORRELATED and e.typical_rms > most)
 
 
@@ -433,13 +409,14 @@ def astray(distances: Array) -> npt.NDArray[np.bool_]:
     """
     d = np.nan_to_num(distances)
     # (sooner counted than the median is found)
-    if d.max() <= OUTLIER or 2 * np.count_nonzero(TIMES_MEDIAN * d > d.max()) > d.size:
+    near = np.count_nonzero(thresholds.TIMES_MEDIAN * d > d.max())
+    if d.max() <= thresholds.OUTLIER or 2 * near > d.size:
         return np.zeros(d.shape, bool)
-    limit = max(TIMES_MEDIAN * np.median(d[d > 0]), OUTLIER)
-    few = int(PART_ASTRAY * d.shape[1])
+    limit = max(thresholds.TIMES_MEDIAN * np.median(d[d > 0]), thresholds.OUTLIER)
+    few = int(thresholds.PART_ASTRAY * d.shape[1])
     farthest = -np.sort(-d, axis=1)[:, : few + 1]
     # The last of a view's corners that is far, and far from the next.
-    last = (farthest[:, :-1] > limit) & (farthest[:, :-1] > APART * farthest[:, 1:])
+    last = (farthest[:, :-1] > limit) & (farthest[:, :-1] > thresholds.APART * farthest[:, 1:])
     least = np.min(np.where(last, farthest[:, :-1], np.inf), axis=1, initial=np.inf)
     return np.asarray(d >= least[:, None])
 

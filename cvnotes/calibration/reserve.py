@@ -19,9 +19,9 @@ from contextlib import suppress
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.base import Array, ConvergenceError, DegenerateError, Minimum
+from cvnotes.base import Array, ConvergenceError, DegenerateError
 from cvnotes.calibration.refinement import (
-    NormalEquations,
+    Optimum,
     Problem,
     State,
     minimise,
@@ -117,15 +117,13 @@ def _mirror(n: Array) -> Array:
 
 
 def best_turned(
-    problem: Problem,
-    found: Minimum[State, NormalEquations],
-    known: Sequence[tuple[Minimum[State, NormalEquations], Minimum[State, NormalEquations]]] = (),
-) -> Minimum[State, NormalEquations]:
+    problem: Problem, found: Optimum, known: Sequence[tuple[Optimum, Optimum]] = ()
+) -> Optimum:
     """Turn boards over as long as that leads to a lower minimum.
 
     Of some minima it is `known` already to which others that leads.
     """
-    better: Minimum[State, NormalEquations] | None = found
+    better: Optimum | None = found
     while better is not None:
         found = better
         for end, lowest in known:
@@ -135,9 +133,7 @@ def best_turned(
     return found
 
 
-def _lower_minima(
-    problem: Problem, found: Minimum[State, NormalEquations]
-) -> Iterator[Minimum[State, NormalEquations]]:
+def _lower_minima(problem: Problem, found: Optimum) -> Iterator[Optimum]:
     """Return the minima below this one: each board in question turned over, then all of them."""
     in_question = _in_question(problem, found)
     sets = [in_question[i : i + 1] for i in range(len(in_question))]
@@ -150,7 +146,7 @@ def _lower_minima(
                 yield other if other.converged else minimise(problem, other.x)
 
 
-def _in_question(problem: Problem, found: Minimum[State, NormalEquations]) -> npt.NDArray[np.intp]:
+def _in_question(problem: Problem, found: Optimum) -> npt.NDArray[np.intp]:
     """List the views that the other pose fits about as well, the likeliest first.
 
     The camera is held meanwhile, so that all boards are turned over in one go.
@@ -169,7 +165,7 @@ def _in_question(problem: Problem, found: Minimum[State, NormalEquations]) -> np
     return order[ratio[order] < _IN_QUESTION**2]
 
 
-def _is_same(one: Minimum[State, NormalEquations], other: Minimum[State, NormalEquations]) -> bool:
+def _is_same(one: Optimum, other: Optimum) -> bool:
     """Return whether two minimisations ended in the same minimum.
 
     Where lenses are only compared, they end a little beside it.

@@ -8,17 +8,11 @@ from warnings import warn
 
 import numpy as np
 
-from cvnotes.base import Array, CalibrationWarning, CvnotesError, Minimum
+from cvnotes.base import Array, CalibrationWarning, CvnotesError
 from cvnotes.base.digits import with_deviation
 from cvnotes.calibration.board_shape import BoardShape
 from cvnotes.calibration.correspondences import Correspondences
-from cvnotes.calibration.refinement import (
-    NormalEquations,
-    Problem,
-    State,
-    covariance,
-    pose_covariance,
-)
+from cvnotes.calibration.refinement import Optimum, Problem, covariance, pose_covariance
 from cvnotes.calibration.thresholds import TIED, TIMES_NOISE
 from cvnotes.camera import AnyLens, Camera
 from cvnotes.camera.model import SENSOR
@@ -78,9 +72,7 @@ class Calibration:
     _pose_covariance: Callable[[], Array] | None = field(default=None, repr=False)
 
     @staticmethod
-    def of(
-        problem: Problem, data: Correspondences, best: Minimum[State, NormalEquations], **also: Any
-    ) -> "Calibration":
+    def of(problem: Problem, data: Correspondences, best: Optimum, **also: Any) -> "Calibration":
         """Undo the scaling of the board, and add the error bars; not judged yet."""
         camera, q = problem.camera_of(best.x.shared), len(problem.names)
         # (what holds the board's corners belongs to no view)

@@ -51,9 +51,9 @@ def calibration_json(
     """Spell a calibration as JSON, with photographs, and a note to whoever opens it."""
     if files and len(files) != len(result["poses"]):
         raise CvnotesError(f"files: expected {len(result['poses'])} names, got {len(files)}")
-    names, covariance = result["names"], result["covariance"]
-    std = np.sqrt(np.diag(covariance)).tolist()
-    keys = {
+    names, shape = result["names"], result.get("shape")
+    of_views = result.get("_covariance_of_views")
+    keys: dict[str, Any] = {
         "format": FORMAT,
         "version": VERSION,
         **({"note": note} if note else {}),
@@ -63,15 +63,17 @@ def calibration_json(
         **camera_to_dict(Camera(result["A"], lens=result["lens"], size=result["size"])),
         "lens": _of_lens(names),
         "rms": float(result["rms"]),
-        "standard_deviations": dict(zip(names, std, strict=True)),
-        "covariance": covariance.tolist(),
-        **_of_views(result, names),
-        **_of_shape(result.get("shape")),
-        "rejected": [{"file": r.file, "reason": str(r.reason)} for r in rejected],
+        **_bars(names, result["covariance"]),
     }
-    views: list[dict[str, Any]] = []
-    for G, rms in zip(result["poses"], result["view_rms"], strict=True):
-        views.append({"rms": float(rms), **pose_to_dict(G)})
+    if of_views is not None and np.isfinite(of_views).all():
+        keys |= _bars(names, of_views, "_of_views")
+    if shape is not None:
+        arrays = {"given": shape.given, "points": shape.points, "standard_deviations": shape.std}
+        lists = {name: array.tolist() for name, array in arrays.items()}
+        keys["board_shape"] = {"kind": shape.kind, **lists}
+    keys["rejected"] = [{"file": r.file, "reason": str(r.reason)} for r in rejected]
+    given = zip(result["poses"], result["view_rms"], strict=True)
+    views: list[dict[str, Any]] = [{"rms": float(rms), **pose_to_dict(G)} for G, rms in given]
     for view, file in zip(views, files, strict=False):
         view["file"] = printable(file)
     text = dump(keys | _with_corners(views, result["_data"]))
@@ -90,29 +92,12 @@ def _of_lens(names: Sequence[str]) -> str:
     return " ".join(name for name in names if name not in SENSOR) or "none"
 
 
-def _of_views(result: Mapping[str, Any], names: Sequence[str]) -> dict[str, Any]:
-    """Return the covariance over views, unless views do not determine it."""
-    covariance = result.get("_covariance_of_views")
-    if covariance is None or not np.isfinite(covariance).all():
-        return {}
+def _bars(names: Sequence[str], covariance: Array, of: str = "") -> dict[str, Any]:
+    """Spell a covariance, and the deviations of its diagonal by name."""
     std = np.sqrt(np.diag(covariance)).tolist()
     return {
-        "standard_deviations_of_views": dict(zip(names, std, strict=True)),
-        "covariance_of_views": covariance.tolist(),
-    }
-
-
-def _of_shape(shape: BoardShape | None) -> dict[str, Any]:
-    """Return the board's shape, unless it was taken for flat."""
-    if shape is None:
-        return {}
-    return {
-        "board_shape": {
-            "kind": shape.kind,
-            "given": shape.given.tolist(),
-            "points": shape.points.tolist(),
-            "standard_deviations": shape.std.tolist(),
-        }
+        f"standard_deviations{of}": dict(zip(names, std, strict=True)),
+        f"covariance{of}": covariance.tolist(),
     }
 
 

@@ -21,7 +21,6 @@ from cvnotes.base import (
     CvnotesError,
     DegenerateError,
     InputTypeError,
-    Minimum,
     ShapeError,
     intrinsic_matrix,
     matrix,
@@ -32,7 +31,7 @@ from cvnotes.calibration import reserve
 from cvnotes.calibration.refinement import (
     CORRELATED,
     FEW_VIEWS,
-    NormalEquations,
+    Optimum,
     Problem,
     State,
     autocorrelation,
@@ -88,11 +87,11 @@ class Search:
     tolerance: float = 1e-12
     patience: int | None = None
     rival: float | None = None
-    minima: list[Minimum[State, NormalEquations]] = field(default_factory=list)
+    minima: list[Optimum] = field(default_factory=list)
     own: list[str] = field(default_factory=list)  # the steps that are the student's
     resumes: bool = False  # where another lens ended
     # before boards were turned
-    ends: list[Minimum[State, NormalEquations]] = field(default_factory=list)
+    ends: list[Optimum] = field(default_factory=list)
 
     def starts(self) -> "Iterator[Start]":
         """Return the starts, the most robust first, until one has led to a good minimum."""
@@ -107,14 +106,13 @@ class Search:
         """Start where a lens with more or fewer coefficients of the same kind ended."""
         shared = self.problem.state(camera, np.empty((0, 4, 4))).shared
         with suppress(ConvergenceError, DegenerateError):
-            found = minimise(
-                self.problem,
-                x._replace(shared=shared),
-                tolerance=self.tolerance,
-                patience=self.patience,
-            )
+            found = self.minimise(x._replace(shared=shared))
             self.resumes = True
             self.keep(found)
+
+    def minimise(self, start: State) -> Optimum:
+        """Minimise from a start, as closely as is asked for."""
+        return minimise(self.problem, start, tolerance=self.tolerance, patience=self.patience)
 
     def _is_done(self) -> bool:
         return bool(self.minima) and (self._is_good(self.minima[-1]) or self._is_decided())
@@ -148,7 +146,7 @@ class Search:
         for camera in reserve.wide_cameras(self.problem):
             yield resumed(self, camera)
 
-    def keep(self, found: Minimum[State, NormalEquations]) -> None:
+    def keep(self, found: Optimum) -> None:
         """Note where a start led, with no board in the wrong pose; from the same end, to the same.
 
         Where no start is good, many of them end alike, and to turn boards over takes longest.
@@ -159,7 +157,7 @@ class Search:
             found = reserve.best_turned(self.problem, found, known)
         self.minima.append(found)
 
-    def _may_be_turned(self, found: Minimum[State, NormalEquations]) -> bool:
+    def _may_be_turned(self, found: Optimum) -> bool:
         """Return whether a board may be in its other pose: from what is known already."""
         if found.cost <= _NOISELESS**2 * self.problem.n_seen:
             return False
@@ -175,7 +173,7 @@ class Search:
     def _has_many_views(self) -> bool:
         return len(self.problem.m) > FEW_VIEWS
 
-    def _is_good(self, minimum: Minimum[State, NormalEquations]) -> bool:
+    def _is_good(self, minimum: Optimum) -> bool:
         allowed = (_SUSPICIOUS * max(self.problem.size)) ** 2
         if not minimum.converged or typical_cost(self.problem, minimum) >= allowed:
             return False
@@ -211,14 +209,14 @@ class Search:
         by_view = self.minima[-1].system.view_costs / self.problem.n_seen_by_view
         return bool(self._has_many_views and by_view.max() > _STRANGE**2 * np.median(by_view))
 
-    def _is_systematic(self, minimum: Minimum[State, NormalEquations]) -> bool:
+    def _is_systematic(self, minimum: Optimum) -> bool:
         """Return whether more than noise is left: few views bend a wrong camera until it fits."""
         if minimum.cost < (_SYSTEMATIC * max(self.problem.size)) ** 2 * self.problem.n_seen:
             return False
         r = self.problem.residuals(self.problem.camera_of(minimum.x.shared), minimum.x)
         return autocorrelation(r, self.problem.freedom) > CORRELATED
 
-    def best(self) -> Minimum[State, NormalEquations]:
+    def best(self) -> Optimum:
         """Return the lowest minimum that was found."""
         if not self.minima:
             yours = f", or your {' and '.join(self.own)} start far from it" if self.own else ""
@@ -351,14 +349,7 @@ class Start:
 
     def refine(self, A: Array, G: Array, lens: AnyLens) -> None:
         """5. Minimise from here, with no board in the wrong pose, and keep what is found."""
-        search = self.search
-        found = minimise(
-            self.problem,
-            self.state(A, G, lens),
-            tolerance=search.tolerance,
-            patience=search.patience,
-        )
-        search.keep(found)
+        self.search.keep(self.search.minimise(self.state(A, G, lens)))
 
     def _is_own(self, step: Any, library: Any, name: str) -> bool:
         """Return whether a step is the student's, and take note of it."""

@@ -30,7 +30,6 @@ from cvnotes.camera.vanishing import (
     focal_length,
     horizon,
     intrinsics_from_vanishing_points,
-    normal_from_horizon,
     vanishing_point,
 )
 
@@ -63,5 +62,4 @@ __all__ = [
     "horizon",
     "focal_length",
     "intrinsics_from_vanishing_points",
-    "normal_from_horizon",
 ]

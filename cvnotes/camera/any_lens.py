@@ -105,10 +105,7 @@ class AnyLens(ABC):
 
     @abstractmethod
     def derivatives(
-        self,
-        M: Array,
-        names: tuple[str, ...] | None = None,
-        out: tuple[Array, Array] | None = None,
+        self, M: Array, names: tuple[str, ...] | None = None, out: tuple[Array, Array] | None = None
     ) -> tuple[Array, Array, Array]:
         """Show M (3, ...) through the lens, with derivatives; unguarded, for whoever refines.
 
@@ -322,10 +319,7 @@ class PlaneLens(AnyLens):
         return np.asarray(d / np.linalg.norm(d, axis=-1, keepdims=True))
 
     def derivatives(
-        self,
-        M: Array,
-        names: tuple[str, ...] | None = None,
-        out: tuple[Array, Array] | None = None,
+        self, M: Array, names: tuple[str, ...] | None = None, out: tuple[Array, Array] | None = None
     ) -> tuple[Array, Array, Array]:
         """Show M (3, ...) through the lens, with derivatives; see `AnyLens.derivatives`.
 

@@ -123,10 +123,7 @@ class FisheyeLens(AnyLens):
         return np.where(reached[..., None], d, np.nan)
 
     def derivatives(
-        self,
-        M: Array,
-        names: tuple[str, ...] | None = None,
-        out: tuple[Array, Array] | None = None,
+        self, M: Array, names: tuple[str, ...] | None = None, out: tuple[Array, Array] | None = None
     ) -> tuple[Array, Array, Array]:
         """Show M (3, ...) through the lens, with derivatives; see `AnyLens.derivatives`.
 

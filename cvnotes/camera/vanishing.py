@@ -7,7 +7,6 @@ from cvnotes.base import (
     Array,
     DegenerateError,
     ShapeError,
-    intrinsic_matrix,
     levenberg_marquardt,
     matrix,
     points,
@@ -231,20 +230,3 @@ def intrinsics_from_vanishing_points(v: npt.ArrayLike) -> Array:
         )
     f = focal_length(v1, v2, c)
     return intrinsics(f, f, *(c + middle))
-
-
-def normal_from_horizon(A: npt.ArrayLike, line: npt.ArrayLike) -> Array:
-    """Return the normal (3,) in the CRF of the planes whose horizon is a line (3,): n ≈ Aᵀ l.
-
-    Of unit length; upwards or downwards, as the line's own sign says.
-
-    Examples
-    --------
-    >>> normal_from_horizon(intrinsics(800, 800, 320, 240), [0, 1, -240])
-    array([0., 1., 0.])
-    """
-    line = matrix(line, "line", 3)
-    if line.ndim != 1 or not line.any():
-        raise ShapeError(f"line: expected one line (3,) that is not zero, got shape {line.shape}")
-    n = intrinsic_matrix(A).T @ (line / np.abs(line).max())
-    return np.asarray(n / np.linalg.norm(n)) + 0.0

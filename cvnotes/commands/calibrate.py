@@ -5,7 +5,7 @@ import re
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from cvnotes.base import CvnotesError, DegenerateError
+from cvnotes.base import CvnotesError
 from cvnotes.base.writing import check_folder, printable
 from cvnotes.commands.console import EXIT_CODES, complain, progress, say, shortfall
 from cvnotes.commands.target import corners, length
@@ -97,9 +97,6 @@ def run(args: argparse.Namespace) -> int:
         other = error.photographs.instead
         hint = ": try --corners {}x{}".format(*other) if other else ""
         complain("calibrate", f"{error}{hint}")
-        return 1
-    except DegenerateError as error:
-        complain("calibrate", str(error))
         return 1
     say_count(found.photographs)
     say(photo_table(found.photographs, found.calibration) + "\n")

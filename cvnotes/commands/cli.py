@@ -6,6 +6,7 @@ interrupted. Reasons go to stderr, one line each; nobody is shown a traceback.
 
 import argparse
 import os
+import signal
 import sys
 import traceback
 from collections.abc import Sequence
@@ -67,7 +68,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     command = ""
     open_streams()
     try:
-        with heard(_interrupt, "SIGTERM", "SIGHUP"):
+        # SIGTERM, or closing the terminal, ends the command as Ctrl-C does: cleaned up.
+        with heard(signal.default_int_handler, "SIGTERM", "SIGHUP"):
             given = sys.argv[1:] if arguments is None else list(arguments)
             if given[:1] and given[0] in _SMALL_MATRICES:
                 _one_thread_for_matrices()
@@ -105,11 +107,6 @@ def _one_thread_for_matrices() -> None:
     """
     if "numpy" not in sys.modules:  # it looks once, when it is imported
         os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-
-
-def _interrupt(*_: Any) -> NoReturn:
-    """Let SIGTERM, or closing the terminal, end the command as Ctrl-C does: cleaned up."""
-    raise KeyboardInterrupt
 
 
 def _cannot(command: str, error: Exception) -> int:

@@ -40,10 +40,6 @@ def run(
     return 0
 
 
-def _options(actions: list[argparse.Action]) -> list[str]:
-    return [option for action in actions for option in action.option_strings]
-
-
 def _choices(actions: list[argparse.Action]) -> list[str]:
     """Return the words that an argument without an option may be."""
     return [str(c) for a in actions if not a.option_strings for c in a.choices or ()]
@@ -51,7 +47,18 @@ def _choices(actions: list[argparse.Action]) -> list[str]:
 
 def _bash(arguments: dict[str, list[argparse.Action]], helps: dict[str, str]) -> str:
     """Complete options and fixed words; everything else are files."""
-    cases = [_bash_case(name, arguments[name]) for name in helps]
+    valued = [
+        f'        "{name} {option}") words="{" ".join(map(str, action.choices or ()))}" ;;'
+        for name in helps
+        for action in arguments[name]
+        for option in action.option_strings
+        if action.nargs != 0
+    ]
+    plain = []
+    for name in helps:
+        options = [option for action in arguments[name] for option in action.option_strings]
+        words = " ".join(_choices(arguments[name]) + options)
+        plain.append(f'            {name}) words="{words}" ;;')
     top = " ".join([*helps, *_TOP])
     return "\n".join(
         [
@@ -62,9 +69,9 @@ def _bash(arguments: dict[str, list[argparse.Action]], helps: dict[str, str]) ->
             f'        words="{top}"',
             "    else",
             '        case "${COMP_WORDS[1]} $before" in',
-            *[line for valued, _ in cases for line in valued],
+            *valued,
             '        *) case "${COMP_WORDS[1]}" in',
-            *[plain for _, plain in cases],
+            *plain,
             "        esac ;;",
             "        esac",
             "    fi",
@@ -72,19 +79,6 @@ def _bash(arguments: dict[str, list[argparse.Action]], helps: dict[str, str]) ->
             "}",
             "complete -o default -F _cvnotes cvnotes",
         ]
-    )
-
-
-def _bash_case(name: str, actions: list[argparse.Action]) -> tuple[list[str], str]:
-    valued = [
-        f'        "{name} {option}") words="{" ".join(map(str, action.choices or ()))}" ;;'
-        for action in actions
-        for option in action.option_strings
-        if action.nargs != 0
-    ]
-    return (
-        valued,
-        f'            {name}) words="{" ".join(_choices(actions) + _options(actions))}" ;;',
     )
 
 

@@ -3,12 +3,23 @@
 import base64
 import io
 from html import escape
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 # The meanings of the course's figures.
 ESTIMATED, WORLD, LENS, INK = "#D55E00", "#009E73", "#0072B2", "currentColor"
+
+
+def encoded(picture: Any, kind: str = "PNG", **how: Any) -> bytes:
+    """Return a picture, an array or Pillow's, as a file."""
+    from PIL import Image
+
+    file = io.BytesIO()
+    image = picture if isinstance(picture, Image.Image) else Image.fromarray(picture)
+    image.save(file, kind, **how)
+    return file.getvalue()
 
 
 class Drawing:
@@ -70,10 +81,9 @@ class Drawing:
         """Put a grey picture (h, w) on the sheet, of such a size; at most twice as fine as that."""
         from PIL import Image
 
-        packed, small = io.BytesIO(), Image.fromarray(picture)
+        small = Image.fromarray(picture)
         small.thumbnail((round(2 * size[0]), round(2 * size[1])), Image.Resampling.BOX)
-        small.save(packed, "JPEG", quality=75)
-        self._image(packed, "jpeg", size, at)
+        self._image(encoded(small, "JPEG", quality=75), "jpeg", size, at)
 
     def areas(
         self, numbers: npt.NDArray[np.uint8], colours: list[str], size: tuple[float, float]
@@ -81,19 +91,14 @@ class Drawing:
         """Put a picture (h, w) on the sheet whose pixels are numbers of colours."""
         from PIL import Image, ImageColor
 
-        picture, packed = Image.fromarray(numbers), io.BytesIO()
+        picture = Image.fromarray(numbers)
         picture.putpalette(sum(map(ImageColor.getrgb, colours), ()))
-        picture.save(packed, "PNG")
-        self._image(packed, "png", size)
+        self._image(encoded(picture), "png", size)
 
     def _image(
-        self,
-        packed: io.BytesIO,
-        kind: str,
-        size: tuple[float, float],
-        at: tuple[float, float] = (0, 0),
+        self, file: bytes, kind: str, size: tuple[float, float], at: tuple[float, float] = (0, 0)
     ) -> None:
-        data = base64.b64encode(packed.getvalue()).decode()
+        data = base64.b64encode(file).decode()
         (x, y), (width, height) = at, size
         self._parts.append(
             f'<image x="{x:g}" y="{y:g}" width="{width:g}" height="{height:g}" '

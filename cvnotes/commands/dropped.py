@@ -4,7 +4,6 @@ The page "Calibrate your camera" of the site runs this in the browser; what it m
 that the command writes, to the same digits.
 """
 
-import io
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
@@ -15,6 +14,7 @@ import numpy as np
 from cvnotes.base import Array, CornersNotFound, CvnotesError
 from cvnotes.base.writing import printable
 from cvnotes.commands.calibrate import contents_of
+from cvnotes.commands.drawing import encoded
 from cvnotes.commands.page import figures, words
 from cvnotes.commands.report import camera_report, note_of
 from cvnotes.commands.undistort import straightened
@@ -81,7 +81,7 @@ class Dropped:
             "used": item.corners is not None,
             "words": item.reason.brief if item.reason else note_of(item),
             "size": list(item.size),
-            "png": _png(item),
+            "png": encoded(item.thumbnail),
             "corners": item.on_thumbnail(corners).ravel().tolist(),
         }
 
@@ -223,11 +223,3 @@ def _inside(m: Array, corners: tuple[int, int], size: tuple[int, int]) -> bool:
 def sheet(columns: int, rows: int, square: float, paper: str) -> bytes:
     """Return the PDF of a board to print, as ``cvnotes target`` writes it."""
     return chessboard((columns, rows), square).sheet(paper).pdf()
-
-
-def _png(photo: Detection) -> bytes:
-    from PIL import Image
-
-    packed = io.BytesIO()
-    Image.fromarray(photo.thumbnail).save(packed, "PNG")
-    return packed.getvalue()

@@ -50,14 +50,15 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
         "interrupted goes on with --resume.",
     )
     add = parser.add_argument
-    add("folder", metavar="FOLDER", help="where the notebooks are")
-    add("--out", required=True, metavar="marks.csv", help="table to write")
-    add("--assignment", metavar="homework.toml",
+    add("folder", type=Path, metavar="FOLDER", help="where the notebooks are")
+    add("--out", type=Path, required=True, metavar="marks.csv", help="table to write")
+    add("--assignment", type=Path, metavar="homework.toml",
         help="which exercises, for how many points, by whom")  # fmt: skip
-    add("--with", dest="added", action="append", default=[], metavar="my_exercises.py",
-        help="a file with exercises of your own")  # fmt: skip
-    add("--feedback", metavar="FOLDER", help="folder to write a page for each student to")
-    add("--summary", metavar="class.html",
+    add("--with", dest="added", type=Path, action="append", default=[],
+        metavar="my_exercises.py", help="a file with exercises of your own")  # fmt: skip
+    add("--feedback", type=Path, metavar="FOLDER",
+        help="folder to write a page for each student to")  # fmt: skip
+    add("--summary", type=Path, metavar="class.html",
         help="page of the class to write, and its picture (.svg)")  # fmt: skip
     add("--format", choices=FORMATS, help="also write a table for this platform, beside the other")
     add("--resume", action="store_true", help="keep the rows of notebooks that did not change")
@@ -149,38 +150,24 @@ class Outputs:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Grade, write the table, tell about the class; gives the exit code: 0 done, 1 cannot."""
-    try:
-        return _grade(args)
-    except CvnotesError as error:
-        complain("grade", str(error))
-        return 1
-
-
-def _grade(args: argparse.Namespace) -> int:
+    """Grade, write the table, tell about the class; gives the exit code: 0 done."""
     for path in args.added:
         COURSE.add_exercises(path)
-    assignment = read_assignment(Path(args.assignment), COURSE) if args.assignment else None
-    outputs = Outputs(
-        Path(args.out),
-        assignment,
-        args.format,
-        Path(args.feedback) if args.feedback else None,
-        Path(args.summary) if args.summary else None,
-    )
-    folder, limits = Path(args.folder), Limits(args.seconds, int(args.megabytes))
+    assignment = read_assignment(args.assignment, COURSE) if args.assignment else None
+    outputs = Outputs(args.out, assignment, args.format, args.feedback, args.summary)
+    limits = Limits(args.seconds, int(args.megabytes))
     _check(outputs)
     known = read_records(outputs.records, limits, COURSE) if args.resume else {}
     with ExitStack() as stack:
         handed_in, marks = grade_folder(
-            folder,
+            args.folder,
             COURSE,
             seconds=limits.seconds,
             megabytes=limits.megabytes,
             jobs=int(args.jobs) if args.jobs else None,
             executor=stack.enter_context(_cluster(args.cluster)) if args.cluster else None,
             known=known,
-            ours=[*outputs.all, *map(Path, [*args.added, *filter(None, [args.assignment])])],
+            ours=[*outputs.all, *args.added, *filter(None, [args.assignment])],
         )
         stack.enter_context(heard(_interrupt, *ENDING))
         graded: list[Mark] = []

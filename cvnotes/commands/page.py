@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Iterator, Sequence
 from html import escape
+from importlib.resources import files
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -15,43 +16,6 @@ if TYPE_CHECKING:
     from cvnotes.photographs import CalibratedPhotographs
 
 _LONG = 16  # letters that stay on one line in a table
-_STYLE = """
-:root { color-scheme: light dark; --line: #8885; --bad: #A84300; --bar: #D55E00; }
-body { font: 1rem/1.5 system-ui, sans-serif; margin: 0 auto; padding: 1rem; max-width: 45rem;
-       overflow-wrap: break-word; }
-h1 { font-size: 1.4rem; margin: 0 0 .5rem; }
-h1:not(:first-child) { margin-top: 3rem; }
-h2 { font-size: 1.15rem; margin: 2rem 0 .5rem; }
-p, ul, table, figure, dl { margin: .5rem 0; }
-ul { padding-left: 1.2rem; }
-table { border-collapse: collapse; font-variant-numeric: tabular-nums; margin: 1rem 0; }
-td, th { text-align: right; padding: .15rem 1rem .15rem 0; border-bottom: 1px solid var(--line); }
-td:first-child, th:first-child, td:last-child { text-align: left; }
-td { white-space: nowrap; }
-td.long { white-space: normal; overflow-wrap: anywhere; }
-dl { display: grid; grid-template-columns: max-content 1fr; gap: .25rem 1rem; }
-dd { margin: 0; }
-dt { opacity: .85; }
-figcaption { font-size: .9rem; }
-svg { display: block; width: 100%; height: auto; max-height: 90vh; margin-bottom: .4rem; }
-.bad { color: var(--bad); font-weight: 600; }
-.key span { white-space: nowrap; margin-right: 1rem; }
-.key i { display: inline-block; width: 1em; height: 1em; margin-right: .35em; vertical-align: -.1em;
-         border: 1px solid var(--line); box-sizing: border-box; }
-.wall { display: grid; grid-template-columns: repeat(auto-fill, minmax(min(45%, 13rem), 1fr));
-        gap: 1rem; }
-.wall figure { margin: 0; }
-.bar { height: .3rem; background: var(--bar); }
-.bar, .key i { -webkit-print-color-adjust: exact; print-color-adjust: exact; }
-h1, h2 { break-after: avoid; }
-section, figure, tr { break-inside: avoid; }
-@media (max-width: 32rem) {
-  svg { font-size: 25px; }
-  table { font-size: .85rem; }
-  td, th { padding-right: .6rem; }
-}
-@media (prefers-color-scheme: dark) { :root { --bad: #FF9A5C; } }
-"""
 
 
 def report_page(found: "CalibratedPhotographs", *, note: str = "") -> str:
@@ -62,10 +26,11 @@ def report_page(found: "CalibratedPhotographs", *, note: str = "") -> str:
 
 def page(title: str, parts: Iterable[str], note: str) -> str:
     """Put the parts of a page together."""
+    style = files("cvnotes.commands").joinpath("page.css").read_text("utf-8")
     return (
         f'<!doctype html>\n<html lang="en"><head><meta charset="utf-8">\n<!-- {note} -->\n'
         f'<meta name="viewport" content="width=device-width">\n<title>{escape(title)}</title>\n'
-        f"<style>{_STYLE}</style></head>\n<body><h1>{escape(title)}</h1>\n"
+        f"<style>\n{style}</style></head>\n<body><h1>{escape(title)}</h1>\n"
         + "\n".join(parts)
         + "\n</body></html>\n"
     )

@@ -1,7 +1,5 @@
 """What `cvnotes calibrate` prints: a line for each photograph, the camera, what is doubtful."""
 
-import csv
-import io
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
@@ -9,7 +7,7 @@ import numpy as np
 
 from cvnotes.base import text_table
 from cvnotes.base.digits import with_deviation
-from cvnotes.base.writing import harmless
+from cvnotes.base.writing import as_csv
 from cvnotes.calibration.coverage import covered_cells, joined
 from cvnotes.calibration.prediction import angles_seen
 from cvnotes.calibration.reliability import widest_angle
@@ -101,13 +99,9 @@ def note_of(photo: Detection, m: "Array | None" = None) -> str:
 def photo_csv(photographs: Photographs, result: "Calibration") -> str:
     """Return the same table for other programs: reasons in full, no RMS for what was not used."""
     names, rejected = photographs.named()
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(TABLE_HEADER)
-    for file, rms, note in zip(names, result.view_rms, notes_of(photographs, result), strict=True):
-        writer.writerow([harmless(file), f"{rms:.4f}", harmless(note)])
-    writer.writerows([harmless(r.file), "", harmless(str(r.reason))] for r in rejected)
-    return text.getvalue()
+    used = zip(names, result.view_rms, notes_of(photographs, result), strict=True)
+    rows = [(file, f"{rms:.4f}", note) for file, rms, note in used]
+    return as_csv([TABLE_HEADER, *rows, *((r.file, "", str(r.reason)) for r in rejected)])
 
 
 def camera_report(result: "Calibration") -> list[Block]:

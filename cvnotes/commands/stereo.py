@@ -1,7 +1,6 @@
 """``cvnotes stereo``: from pairs of photographs of a chessboard to two cameras on one rig."""
 
 import argparse
-import io
 import re
 import warnings
 from collections.abc import Callable
@@ -12,13 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.base import (
-    Array,
-    CalibrationWarning,
-    CvnotesError,
-    DegenerateError,
-    FileError,
-)
+from cvnotes.base import Array, CalibrationWarning, CvnotesError, DegenerateError, FileError
 from cvnotes.base.writing import check_folder, printable
 from cvnotes.calibration.thresholds import TIMES_NOISE
 from cvnotes.commands.calibrate import add_options, asked_board, say_count
@@ -82,11 +75,10 @@ def run(args: argparse.Namespace) -> int:
     (left, right), model = sides, Model(args.lens, args.board_shape, args.skew)
     try:
         rig = calibrate_pairs(left, right, model, keep_all=args.keep_all)
-    except CvnotesError as error:
+    except CvnotesError:
         for seen in sides:
             say(photo_table(seen))
-        complain("stereo", str(error))
-        return 1
+        raise
     contents = _reported(rig, videos)
     write_whole({args.out / name: data for name, data in contents.items()})
     for stale in (path for path in before if path.name not in contents):
@@ -269,19 +261,17 @@ def _greys(photos: "Pair", videos: list[Path]) -> list[npt.NDArray[Any]]:
 
 def _pictures(pair: "RectifiedPair", before: list[Array]) -> tuple[dict[str, bytes], list[str]]:
     """Rectify a pair of photographs, and draw it before and after."""
-    from PIL import Image
-
+    from cvnotes.commands.drawing import encoded
     from cvnotes.commands.page import figure
     from cvnotes.commands.pictures import partners
     from cvnotes.warping import backward_warp
 
     maps = (pair.left_map, pair.right_map)
     after = [backward_warp(image, m) for image, m in zip(before, maps, strict=True)]
-    drawn = {}
-    for side, image in zip(("left", "right"), after, strict=True):
-        encoded = io.BytesIO()
-        Image.fromarray(image).save(encoded, "PNG")
-        drawn[f"rectified-{side}.png"] = marked(encoded.getvalue(), "stereo")
+    drawn = {
+        f"rectified-{side}.png": marked(encoded(image), "stereo")
+        for side, image in zip(SIDES, after, strict=True)
+    }
     shown = [
         figure(partners(each, words, pair.axis), words)
         for each, words in (

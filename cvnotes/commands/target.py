@@ -7,7 +7,7 @@ from cvnotes.base import CvnotesError
 from cvnotes.base.writing import printable
 from cvnotes.commands.console import complain, say
 from cvnotes.files import write_whole
-from cvnotes.files.ownership import maker
+from cvnotes.files.ownership import refuse_foreign
 from cvnotes.targets import PAPERS, CharucoBoard, Chessboard
 
 
@@ -48,18 +48,9 @@ def run(args: argparse.Namespace) -> int:
         complain("target", option)
         return 2
     out = Path(args.out)
-    if out.is_file() and maker(out) != "target":
-        complain(
-            "target",
-            f"{printable(out)} was not made by cvnotes target, which would replace it; "
-            "choose another --out",
-        )
-        return 1
-    try:
-        write_whole({out: board.sheet(args.paper).encoded(args.out)})
-    except CvnotesError as error:
-        complain("target", str(error))
-        return 1
+    if out.is_file():
+        refuse_foreign(out, "target")
+    write_whole({out: board.sheet(args.paper).encoded(args.out)})
     say(f"{printable(args.out)}: print it at 100 %, and check that both rulers are 100 mm")
     return 0
 

@@ -1,7 +1,6 @@
 """``cvnotes undistort``: photographs as an ideal lens would have taken them."""
 
 import argparse
-import io
 import warnings
 from collections.abc import Iterator
 from itertools import chain
@@ -11,6 +10,7 @@ from cvnotes.base import CalibrationWarning, CvnotesError, target_size, text_tab
 from cvnotes.base.writing import check_folder, printable
 from cvnotes.camera import Camera
 from cvnotes.commands.console import complain, progress, say, shortfall
+from cvnotes.commands.drawing import encoded
 from cvnotes.commands.target import length
 from cvnotes.files import Photo, Rejected, open_photos, read_camera, write_camera, write_whole
 from cvnotes.files.ownership import free_name, made_by, marked, numbered, photographs
@@ -80,15 +80,14 @@ def straightened(photo: Photo, camera: Camera, ideal: Camera) -> tuple[bytes, st
 
     from cvnotes.warping import undistort_image
 
-    encoded, exif = io.BytesIO(), Image.Exif()
+    exif = Image.Exif()
     if photo.orientation != 1:
         exif[274] = photo.orientation
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", CalibrationWarning)
         image = undistort_image(photo.image, camera, ideal.A, size=ideal.size)
-    Image.fromarray(image).save(encoded, "PNG", exif=exif)
     notes = [photo.note] * bool(photo.note) + [str(warning.message) for warning in caught]
-    return marked(encoded.getvalue(), "undistort"), "; ".join(notes)
+    return marked(encoded(image, exif=exif), "undistort"), "; ".join(notes)
 
 
 def size(text: str) -> tuple[int, int]:

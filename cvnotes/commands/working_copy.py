@@ -82,20 +82,16 @@ def deliver(course: Path, folder: Path) -> Delivery:
     for chapter in sorted(course.glob("*.ipynb")):
         name, content = chapter.name, _for_the_copy(chapter.read_bytes())
         latest, there = cells_of(content), _cells_there(folder / name)
-        if there == latest:
-            pass
-        elif there is None or there == record.delivered.get(name):
-            (done.new if there is None else done.updated).append(name)
-            contents[folder / name] = content
+        if there in (None, latest, record.delivered.get(name)):
+            record.delivered[name] = latest
+            if there != latest:
+                (done.new if there is None else done.updated).append(name)
+                contents[folder / name] = content
         elif latest not in (record.delivered.get(name), record.offered.get(name)):
             newer = _name_beside(folder, chapter.stem, record)
             done.beside.append((name, newer))
             contents[folder / newer] = content
             record.delivered[newer] = record.offered[name] = latest
-            continue
-        else:
-            continue
-        record.delivered[name] = latest
     for name, content in pages(course).items():
         latest, there = cells_of(content), _cells_there(folder / name)
         if there in (None, record.delivered.get(name)):

@@ -159,15 +159,9 @@ def _load(picture: "Image") -> "tuple[Image, int]":
         orientation = picture.getexif().get(_ORIENTATION, 1)
         return picture, orientation if orientation in range(1, 9) else 1
     # Pillow turns TIFF upright while decoding, and only TIFF: turn it back.
-    undo = {
-        2: Transpose.FLIP_LEFT_RIGHT,
-        3: Transpose.ROTATE_180,
-        4: Transpose.FLIP_TOP_BOTTOM,
-        5: Transpose.TRANSPOSE,
-        6: Transpose.ROTATE_90,
-        7: Transpose.TRANSVERSE,
-        8: Transpose.ROTATE_270,
-    }
+    aside, up, turn = Transpose.FLIP_LEFT_RIGHT, Transpose.FLIP_TOP_BOTTOM, Transpose.ROTATE_180
+    undo = {2: aside, 3: turn, 4: up, 5: Transpose.TRANSPOSE, 7: Transpose.TRANSVERSE}
+    undo |= {6: Transpose.ROTATE_90, 8: Transpose.ROTATE_270}
     return (picture.transpose(undo[tiff]), tiff) if tiff in undo else (picture, 1)
 
 

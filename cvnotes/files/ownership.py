@@ -89,8 +89,9 @@ def free_name(names: Iterable[str], folder: Path, command: str, taken: set[str])
     """
     for name in names:
         path = folder / name
+        there = path.exists() or path.is_symlink()
         known = name.casefold()  # some file systems do not tell a.png from A.png
-        if known not in taken and (not _is_there(path) or maker(path) == command):
+        if known not in taken and (not there or maker(path) == command):
             taken.add(known)
             return path
     raise FileError(f"no name is free in {printable(folder)}")
@@ -121,13 +122,14 @@ def earlier(folder: Path, is_ours: Callable[[str], object], command: str) -> Seq
         return []
     found = sorted(p for p in folder.iterdir() if is_ours(p.name) and not p.is_dir())
     for path in found:
-        if maker(path) != command:
-            raise FileError(
-                f"{printable(path)} was not made by cvnotes {command}, which would replace it; "
-                "choose another --out"
-            )
+        refuse_foreign(path, command)
     return found
 
 
-def _is_there(path: Path) -> bool:
-    return path.exists() or path.is_symlink()
+def refuse_foreign(path: Path, command: str) -> None:
+    """Refuse to replace a file that another command, or somebody else, made."""
+    if maker(path) != command:
+        raise FileError(
+            f"{printable(path)} was not made by cvnotes {command}, which would replace it; "
+            "choose another --out"
+        )

@@ -79,9 +79,9 @@ def frames_of(path: Path, progress: Progress = unseen) -> tuple[list[Photo], int
             candidates, chunk = [*candidates, candidate], []
     if len(chunk) > 1 or not candidates:
         candidates += [_best(chunk, before)[0]] if chunk else []
-    taken = {c.number for c in _different(_still(candidates))}
-    if not taken:
+    if not candidates:
         raise FileError("no frame of this video can be read")
+    taken = {c.number for c in _different(_still(candidates))}
     return _numbered(path, taken), number + 1
 
 
@@ -187,16 +187,12 @@ def _small(grey: npt.NDArray[np.uint8]) -> Array:
 
 def _still(candidates: list[_Candidate]) -> list[_Candidate]:
     """Keep those that move as little as the stillest do, or a little more."""
-    if not candidates:
-        return []
     usual = float(np.quantile([c.motion for c in candidates], 0.25))
     return [c for c in candidates if c.motion <= _MOVING * usual + 0.5]
 
 
 def _different(candidates: list[_Candidate]) -> list[_Candidate]:
     """Take from the stillest on always the one that differs most from all that are taken."""
-    if not candidates:
-        return []
     small = np.array([c.small for c in candidates])
     i = int(np.argmin([c.motion for c in candidates]))
     taken, nearest = [i], np.abs(small - small[i]).mean((1, 2))

@@ -15,12 +15,7 @@ from cvnotes.calibration.two_cameras import TwoCameras, two_cameras
 from cvnotes.camera import Lens
 from cvnotes.files import Reason
 from cvnotes.photographs.detection import Photographs
-from cvnotes.photographs.mirrored import (
-    Mirrored,
-    mirrored,
-    with_doubt,
-    with_doubt_of_mirrored,
-)
+from cvnotes.photographs.mirrored import Mirrored, mirrored, with_doubt, with_doubt_of_mirrored
 from cvnotes.photographs.reasons import Exchanged, Misfit, Mixed
 
 _TELLS_APART = "k1 k2 p1 p2"

@@ -7,22 +7,12 @@ import numpy as np
 import numpy.typing as npt
 
 from cvnotes.base import Array, CvnotesError, DegenerateError
-from cvnotes.calibration import Calibration
+from cvnotes.calibration import Calibration, thresholds
 from cvnotes.calibration.board_shape import deformations
 from cvnotes.calibration.correspondences import Correspondences
 from cvnotes.calibration.doubts import View, Views
 from cvnotes.calibration.parting import NearBy, freedom, guesses, settled
 from cvnotes.calibration.refinement import Problem, State, minimise, refit_poses
-from cvnotes.calibration.thresholds import (
-    AS_WELL,
-    CORNERS_THAT_TELL,
-    EXCHANGED,
-    MIRRORED,
-    MISSES_MORE,
-    MIXED,
-    PART_KEPT,
-    TELLS_ITS_MIRROR,
-)
 from cvnotes.calibration.two_cameras import TwoCameras
 from cvnotes.photographs.detection import Photographs
 from cvnotes.photographs.reasons import Exchanged, Mixed
@@ -75,7 +65,7 @@ def mirrored(photographs: Photographs, result: Calibration, two: TwoCameras | No
     at, costs = refit_poses(held, State(x.shared[: len(problem.names)], x.R, x.T))
     costs = costs.reshape(-1, n)
     way, left = _read_best(held, at, costs)
-    some = bool((costs[0].sum() - left) * freedom(problem.some(slice(n))) > MIXED * left)
+    some = bool((costs[0].sum() - left) * freedom(problem.some(slice(n))) > thresholds.MIXED * left)
     best = None
     if some:
         with suppress(CvnotesError):  # read like this, they may have no camera
@@ -83,21 +73,22 @@ def mirrored(photographs: Photographs, result: Calibration, two: TwoCameras | No
     if best is not None:
         if two:  # they are no camera and its mirror if they explain more
             times = np.sqrt(best.min(0).sum() / problem.n_seen_by_view[:n].sum()) / two.rms
-            if times > AS_WELL:
+            if times > thresholds.AS_WELL:
                 return Mirrored()
-        told = np.minimum(problem.n_seen_by_view[:n], CORNERS_THAT_TELL)
+        told = np.minimum(problem.n_seen_by_view[:n], thresholds.CORNERS_THAT_TELL)
         gain = (best[0] - best[1:].min(0)) * 2 * told.sum() / best.min(0).sum()
         # All read the other way is the same: the fewer count; of halves, that without the first.
         if 2 * np.count_nonzero(gain > 0) + (gain[0] > 0) > n:
             gain = -gain
-        found = np.flatnonzero(gain > MIRRORED)
-        if found.size and np.median(np.abs(gain)) > TELLS_ITS_MIRROR:
+        found = np.flatnonzero(gain > thresholds.MIRRORED)
+        if found.size and np.median(np.abs(gain)) > thresholds.TELLS_ITS_MIRROR:
             return Mirrored(found.tolist())
     elif two:
         return Mirrored()
     rms = result.view_rms
     turned = np.sqrt(costs[1:].min(0) / problem.n_seen_by_view[:n])
-    strange = (rms > MISSES_MORE * np.median(rms)) & (turned < EXCHANGED * rms)
+    strange = rms > thresholds.MISSES_MORE * np.median(rms)
+    strange &= turned < thresholds.EXCHANGED * rms
     if some and (strange != (way > 0)).any() and (strange != (way == 0)).any():
         return Mirrored(some=True)  # the camera of all, of both kinds, judges none of them
     return Mirrored(np.flatnonzero(strange).tolist())
@@ -189,7 +180,7 @@ def with_doubt_of_mirrored(result: Calibration, found: Mirrored) -> Calibration:
         )
     several = len(exchanged) > 1
     why = f", for the camera fits {'them' if several else 'it'} better so"
-    if len(exchanged) > (1 - PART_KEPT) * len(result.poses):
+    if len(exchanged) > (1 - thresholds.PART_KEPT) * len(result.poses):
         why = " there, or in all the others"
     doubt = Mixed(
         f"{{}}: {Exchanged.words}{why}; {asked} Leave out what is mirrored, or turn it back",

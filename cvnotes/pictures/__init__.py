@@ -9,11 +9,7 @@ from cvnotes.pictures.placing import facing, hold_at
 from cvnotes.pictures.posters import chart_room, poster_room
 from cvnotes.pictures.scene_render import depth_map, radiance, render_scene
 from cvnotes.pictures.scenes import blocks, corridor, desk, rails, room, room_with, target_scene
-from cvnotes.pictures.views import (
-    covering_views,
-    fronto_parallel_views,
-    good_views,
-)
+from cvnotes.pictures.views import covering_views, fronto_parallel_views, good_views
 
 __all__ = [
     "course",

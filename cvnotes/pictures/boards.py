@@ -12,7 +12,6 @@ from cvnotes.base import (
     MOST,
     Array,
     CvnotesError,
-    InputTypeError,
     ShapeError,
     blur_width,
     generator,
@@ -24,6 +23,7 @@ from cvnotes.camera import Camera
 from cvnotes.pictures.exposure import Image, expose, gaussian_blur
 from cvnotes.pictures.faces import Target, edges_in_picture
 from cvnotes.pictures.pixel_means import edge_means, polygon_means
+from cvnotes.pictures.placing import target_and_camera
 
 
 def render(
@@ -97,12 +97,7 @@ def render(
            [220, 220, 125,  30,  30],
            [220, 220, 125,  30,  30]], dtype=uint8)
     """
-    if not isinstance(camera, Camera):
-        raise InputTypeError(f"camera: expected a Camera, got {type(camera).__name__}")
-    if not hasattr(target, "faces"):
-        raise InputTypeError(
-            f"target: expected a Chessboard or the like, got {type(target).__name__}"
-        )
+    target_and_camera(target, camera)
     sigma = blur_width(blur, "blur")
     white = number(margin, "margin", at_least=0, at_most=MOST)
     behind = _background(background, target_size(camera.size))

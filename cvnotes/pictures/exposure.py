@@ -15,9 +15,9 @@ from cvnotes.base import (
     MOST_BLUR,
     Array,
     CvnotesError,
-    InputTypeError,
     ShapeError,
     blur_width,
+    generator,
     guarded,
     number,
     numbers,
@@ -46,12 +46,6 @@ def _path(x: npt.ArrayLike, name: str) -> Array:
     return path
 
 
-def _generator(x: object, name: str) -> np.random.Generator | None:
-    if x is not None and not isinstance(x, np.random.Generator):
-        raise InputTypeError(f"{name}: expected a numpy.random.Generator, got {type(x).__name__}")
-    return x
-
-
 def _noise_from_somewhere(noise: float = 0.0, rng: object = None, **_: object) -> None:
     if noise and rng is None:
         raise CvnotesError("noise needs an rng; pass rng=numpy.random.default_rng(seed)")
@@ -74,7 +68,7 @@ def _eight_bits(x: npt.ArrayLike, name: str) -> Image:
     motion=_path,
     noise=_positive,
     gain=_positive,
-    rng=_generator,
+    rng=lambda x, name: None if x is None else generator(x, name),
     jpeg=lambda x, name: None if x is None else _quality(x, name),
     also=_noise_from_somewhere,
 )

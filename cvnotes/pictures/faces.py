@@ -18,7 +18,7 @@ from typing import Any, Protocol
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.base import Array, rigid_motion
+from cvnotes.base import Array, InputTypeError, rigid_motion
 from cvnotes.camera import Camera, px_from_xy
 from cvnotes.pictures.pixel_means import Indices, subdivide
 
@@ -36,6 +36,13 @@ class Target(Protocol):
     @property
     def faces(self) -> tuple[tuple[Array, Any], ...]:
         """Pairs (``world_from_board`` (4, 4), board)."""
+
+
+def is_target(target: Any) -> None:
+    """Refuse what has no faces."""
+    if not hasattr(target, "faces"):
+        given = type(target).__name__
+        raise InputTypeError(f"target: expected a Chessboard or the like, got {given}")
 
 
 @dataclass(frozen=True)

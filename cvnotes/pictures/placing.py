@@ -7,7 +7,6 @@ from cvnotes.base import (
     MOST,
     Array,
     DegenerateError,
-    InputTypeError,
     ShapeError,
     number,
     points,
@@ -16,7 +15,7 @@ from cvnotes.base import (
 )
 from cvnotes.camera import Camera, move, pose
 from cvnotes.camera.model import is_camera
-from cvnotes.pictures.faces import Target
+from cvnotes.pictures.faces import Target, is_target
 
 _PUSHES = 20  # after which a target no longer moves
 _ROOM = 4.0  # pixels kept free along the border of the picture
@@ -24,10 +23,7 @@ _ROOM = 4.0  # pixels kept free along the border of the picture
 
 def target_and_camera(target: Target, camera: Camera) -> None:
     """Refuse what has no faces, and what is no camera."""
-    if not hasattr(target, "faces"):
-        raise InputTypeError(
-            f"target: expected a Chessboard or the like, got {type(target).__name__}"
-        )
+    is_target(target)
     is_camera(camera, "camera")
 
 

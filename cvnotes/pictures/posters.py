@@ -86,7 +86,13 @@ def chart_room() -> Scene:
 
 def chart() -> Scene:
     """Build the chart alone, in its own frame."""
-    return join(_paper(), _ink())
+    width, height = SIZE
+    corners = np.array([[0.0, 0, 0], [width, 0, 0], [width, height, 0], [0, height, 0]])
+    # The letters are strips, one for each run of dark cells.
+    strips = np.concatenate([_word(*row) for row in ROWS])
+    places = np.concatenate([strips, np.full((*strips.shape[:2], 1), -0.2)], axis=-1)
+    loops = np.arange(4 * len(strips)).reshape(-1, 4)
+    return join(quads(corners, [[0, 1, 2, 3]], _PAPER), quads(places.reshape(-1, 3), loops, _INK))
 
 
 def poster_room() -> Scene:
@@ -112,19 +118,6 @@ def poster_room() -> Scene:
         corners = [[x, top, 6300], [x, top, 8900], [x, 300, 8900], [x, 300, 6300]]
         parts.insert(0, quads(corners, [[0, 1, 2, 3]], colour))
     return replace(join(*parts), around=INDOORS)
-
-
-def _paper() -> Scene:
-    width, height = SIZE
-    corners = [[0.0, 0, 0], [width, 0, 0], [width, height, 0], [0, height, 0]]
-    return quads(np.array(corners), [[0, 1, 2, 3]], _PAPER)
-
-
-def _ink() -> Scene:
-    """Build all letters as strips, one for each run of dark cells."""
-    strips = np.concatenate([_word(*row) for row in ROWS])
-    places = np.concatenate([strips, np.full((*strips.shape[:2], 1), -0.2)], axis=-1)
-    return quads(places.reshape(-1, 3), np.arange(4 * len(strips)).reshape(-1, 4), _INK)
 
 
 def _word(word: str, top: float, height: float) -> Array:

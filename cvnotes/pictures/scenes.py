@@ -6,8 +6,9 @@ from itertools import pairwise
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.base import MOST, InputTypeError, number
+from cvnotes.base import MOST, number
 from cvnotes.camera import pose, rotation_from_vector
+from cvnotes.pictures.faces import is_target
 from cvnotes.pictures.meshes import Colour, Scene, Surroundings, box, join, quads
 from cvnotes.targets import Chessboard, ThreePlanes, TwoPlanes
 from cvnotes.targets.chessboard import PrintedBoard
@@ -166,12 +167,7 @@ def room_with(target: Chessboard | TwoPlanes | ThreePlanes, G: npt.ArrayLike) ->
 
 
 def _shell(
-    x: Span,
-    y: Span,
-    z: Span,
-    sides: npt.ArrayLike,
-    tiles: npt.ArrayLike,
-    tile: float,
+    x: Span, y: Span, z: Span, sides: npt.ArrayLike, tiles: npt.ArrayLike, tile: float
 ) -> Scene:
     """Build the walls, the ceiling and the tiled floor of a room; sides are left and right."""
     walls = np.empty((6, 2, 3))
@@ -259,10 +255,7 @@ def target_scene(
     >>> target_scene(TwoPlanes())
     Scene(24 vertices, 24 triangles)
     """
-    if not hasattr(target, "faces"):
-        raise InputTypeError(
-            f"target: expected a Chessboard or the like, got {type(target).__name__}"
-        )
+    is_target(target)
     margin = number(margin, "margin", at_least=0, at_most=MOST)
     boards = [_board(board, margin).moved(G) for G, board in target.faces]
     return join(*boards).moved(np.eye(4) if world_from_target is None else world_from_target)

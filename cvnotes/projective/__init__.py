@@ -1,6 +1,6 @@
 """Chapter 1: points, lines and planes of projective space, at infinity too (notes 2b.1)."""
 
-from cvnotes.projective.lines import cross_ratio, join, lies_on, map_lines, meet
+from cvnotes.projective.lines import cross_ratio, join, meet
 from cvnotes.projective.points import (
     apply,
     direction_to_homogeneous,
@@ -8,12 +8,7 @@ from cvnotes.projective.points import (
     same_up_to_scale,
     to_homogeneous,
 )
-from cvnotes.projective.space import (
-    PLANE_AT_INFINITY,
-    line_of_planes,
-    line_through,
-    meet_plane,
-)
+from cvnotes.projective.space import PLANE_AT_INFINITY, line_through, meet_plane
 
 __all__ = [
     "to_homogeneous",
@@ -23,11 +18,8 @@ __all__ = [
     "same_up_to_scale",
     "join",
     "meet",
-    "lies_on",
-    "map_lines",
     "cross_ratio",
     "PLANE_AT_INFINITY",
     "line_through",
-    "line_of_planes",
     "meet_plane",
 ]

@@ -5,16 +5,7 @@ from functools import partial
 import numpy as np
 import numpy.typing as npt
 
-from cvnotes.base import (
-    Array,
-    DegenerateError,
-    ShapeError,
-    equally_many,
-    guarded,
-    matrix,
-    number,
-    solved,
-)
+from cvnotes.base import Array, DegenerateError, ShapeError, equally_many, guarded
 from cvnotes.projective.points import refuse_zero, vectors
 
 _ROUNDING = 1e-15  # what is left of a determinant of unit vectors that should be 0
@@ -68,51 +59,6 @@ def meet(k: Array, m: Array) -> Array:
     point = np.cross(k, m)
     refuse_zero(point, (k, m), "the lines coincide: they share all their points")
     return np.asarray(point) + 0.0
-
-
-def lies_on(x: npt.ArrayLike, line: npt.ArrayLike, atol: float = 1e-12) -> npt.NDArray[np.bool_]:
-    """Return whether points (..., d) lie on lines or planes (..., d), whatever their factors.
-
-    Both are scaled to unit length, so `atol` is the cosine of an angle, not a distance.
-
-    Examples
-    --------
-    >>> lies_on([[1, 1, 1], [1, 2, 1]], [1, -1, 0])
-    array([ True, False])
-    """
-    x, line = vectors(x, "x", "point"), vectors(line, "line", "line or plane")
-    equally_many("x and line", x.shape[:-1], line.shape[:-1])
-    atol = number(atol, "atol", at_least=0)
-    if x.shape[-1] != line.shape[-1]:
-        raise ShapeError(f"x {x.shape} and line {line.shape} are not of one space")
-    cosine = (x * line).sum(-1) / (np.linalg.norm(x, axis=-1) * np.linalg.norm(line, axis=-1))
-    return np.asarray(np.abs(cosine) <= atol)
-
-
-def map_lines(H: npt.ArrayLike, lines: npt.ArrayLike) -> Array:
-    """Map lines of P² (..., 3), or planes of P³ (..., 4), where H maps points: l' = H⁻ᵀ l.
-
-    So l'ᵀ x' = lᵀ H⁻¹ H x = 0 wherever lᵀ x = 0: incidence stays.
-
-    Raises
-    ------
-    DegenerateError
-        H is singular: it maps some lines to points.
-
-    References
-    ----------
-    .. [1] Hartley and Zisserman, Multiple View Geometry, 2nd ed. (2004), 2.3.
-
-    Examples
-    --------
-    >>> map_lines([[1, 0, 5], [0, 1, 0], [0, 0, 1]], [1, 0, 0])  # x = 0 becomes x = 5
-    array([ 1.,  0., -5.])
-    """
-    lines = vectors(lines, "lines", "line or plane")
-    H = matrix(H, "H", lines.shape[-1], lines.shape[-1])
-    equally_many("H and lines", H.shape[:-2], lines.shape[:-1])
-    why = "H is singular: it maps some lines to points"
-    return solved(np.linalg.solve, H.mT, lines[..., None], why=why)[..., 0] + 0.0
 
 
 def cross_ratio(a: npt.ArrayLike, b: npt.ArrayLike, c: npt.ArrayLike, d: npt.ArrayLike) -> float:

@@ -58,30 +58,6 @@ def line_through(a: Array, b: Array) -> Array:
     return _of_two(a, b, "the points coincide: many lines pass through them")
 
 
-@guarded(p=_plane, q=_plane, also=_as_many)
-def line_of_planes(p: Array, q: Array) -> Array:
-    """Return the line of P³ that two planes (..., 4) share, as a matrix L (..., 4, 4).
-
-    Parallel planes share a line at infinity.
-
-    Raises
-    ------
-    DegenerateError
-        The planes coincide.
-
-    Examples
-    --------
-    >>> z_axis = line_of_planes([1, 0, 0, 0], [0, 1, 0, 0])
-    >>> meet_plane(z_axis, [0, 0, 1, -7])
-    array([ 0.,  0., -7., -1.])
-    """
-    by_planes = _of_two(p, q, "the planes coincide: they share all their points")
-    L = np.zeros_like(by_planes)
-    for (i, j), (k, m) in (((0, 1), (2, 3)), ((0, 2), (3, 1)), ((0, 3), (1, 2))):
-        L[..., i, j], L[..., k, m] = by_planes[..., k, m], by_planes[..., i, j]
-    return L - L.mT
-
-
 @guarded(L=_line, p=_plane, also=_one_each)
 def meet_plane(L: Array, p: Array) -> Array:
     """Return the point (..., 4) where a line L of P³ meets a plane (..., 4): x = L p.

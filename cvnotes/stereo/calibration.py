@@ -8,13 +8,7 @@ from warnings import catch_warnings, simplefilter, warn
 
 import numpy as np
 
-from cvnotes.base import (
-    Array,
-    CalibrationWarning,
-    DegenerateError,
-    ShapeError,
-    image_size,
-)
+from cvnotes.base import Array, CalibrationWarning, DegenerateError, ShapeError, image_size
 from cvnotes.calibration import Calibration, calibrate, extrinsics
 from cvnotes.calibration.board_shape import BOARDS, BoardShape, deformations, with_shape
 from cvnotes.calibration.correspondences import Correspondences, PointSets

@@ -31,7 +31,8 @@ def covariance_over_pairs(problem: StereoProblem, x: StereoState) -> Array:
     corners of a picture together. A camera by itself has `cvnotes.calibration.jackknife`, which
     also says what is worked out here.
     """
-    held = np.concatenate([np.zeros(len(problem.names)), _of_shape(problem)])
+    of_shape = problem.left.held[len(problem.left.names) :]
+    held = np.concatenate([np.zeros(len(problem.names)), of_shape])
     free = replace(
         problem, left=replace(problem.left, hold=None), right=replace(problem.right, hold=None)
     )
@@ -46,8 +47,3 @@ def covariance_over_pairs(problem: StereoProblem, x: StereoState) -> Array:
         return Influence.between(np.array(S), np.array(g), held).covariance
     except DegenerateError:
         return undetermined(len(held))
-
-
-def _of_shape(problem: StereoProblem) -> Array:
-    """Return what holds the shape of the board: squared pixels per unit squared."""
-    return problem.left.held[len(problem.left.names) :]

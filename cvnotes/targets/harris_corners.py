@@ -61,11 +61,7 @@ def harris(image: npt.ArrayLike, *, sigma: float = 1.5, k: float = 0.04) -> Arra
 
 
 def local_maxima(
-    response: npt.ArrayLike,
-    *,
-    radius: int = 5,
-    threshold: float = 0.01,
-    count: int | None = None,
+    response: npt.ArrayLike, *, radius: int = 5, threshold: float = 0.01, count: int | None = None
 ) -> Array:
     """Keep the pixels that no stronger pixel is near to (non-maximum suppression).
 

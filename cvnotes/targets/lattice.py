@@ -37,12 +37,7 @@ def as_asked(lattice: Array, corners: tuple[int, int], k: int) -> Array:
 
 
 def measured(
-    picture: Image,
-    found: Array,
-    *,
-    copy: Grey8 | None = None,
-    k: int = 1,
-    partial: bool = False,
+    picture: Image, found: Array, *, copy: Grey8 | None = None, k: int = 1, partial: bool = False
 ) -> Array:
     """Measure a board that was found in a reduced copy, in the picture itself, and doubt it.
 

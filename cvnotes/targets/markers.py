@@ -266,15 +266,9 @@ class _Standing(NamedTuple):
         tl, tr, br, bl = outlines.swapaxes(0, 1)
         x, y = (tr + br - tl - bl) / (2 * side), (bl + br - tl - tr) / (2 * side)
         frame, offset = np.stack([x, y], axis=-1), middle[nearest] - middle
-        det = frame[:, 0, 0] * frame[:, 1, 1] - frame[:, 0, 1] * frame[:, 1, 0]
-        at = np.stack(
-            [
-                frame[:, 1, 1] * offset[:, 0] - frame[:, 0, 1] * offset[:, 1],
-                frame[:, 0, 0] * offset[:, 1] - frame[:, 1, 0] * offset[:, 0],
-            ],
-            axis=-1,
-        )
-        return _Standing(numbers, numbers[nearest], at / det[:, None])
+        frame[np.linalg.det(frame) == 0] = np.nan
+        steps = np.linalg.solve(frame, offset[..., None])[..., 0]
+        return _Standing(numbers, numbers[nearest], steps)
 
     def agreeing(self, columns: int, *, light: bool = False) -> npt.NDArray[np.bool_]:
         """Return which markers' nearest stands as on a board of so many columns of squares."""
@@ -317,14 +311,8 @@ def _dictionary(name: str) -> Any:
         raise ImportError("markers are drawn and read by OpenCV, which is not installed here")
     import cv2
 
-    constant = f"DICT_{name.upper()}" if name[0] != "a" else f"DICT_{_apriltag(name)}"
-    return cv2.aruco.getPredefinedDictionary(getattr(cv2.aruco, constant))
-
-
-def _apriltag(name: str) -> str:
-    """Spell as OpenCV does: APRILTAG_36h11."""
-    family, bits = name.split("_")
-    return f"{family.upper()}_{bits}"
+    family, bits = name.split("_")  # (spelt as OpenCV does: APRILTAG_36h11)
+    return cv2.aruco.getPredefinedDictionary(getattr(cv2.aruco, f"DICT_{family.upper()}_{bits}"))
 
 
 @contextmanager

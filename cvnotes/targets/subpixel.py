@@ -196,11 +196,7 @@ class Window:
 
 
 def refine_edges(
-    image: npt.ArrayLike,
-    m: npt.ArrayLike,
-    *,
-    window: int = 8,
-    grid: tuple[int, int] | None = None,
+    image: npt.ArrayLike, m: npt.ArrayLike, *, window: int = 8, grid: tuple[int, int] | None = None
 ) -> Array:
     """Move corners to where two blurred edges cross that explain the pixels best.
 
@@ -435,12 +431,7 @@ def gradient_axes(grey: Image, m: Array, half: int) -> Array:
 
 
 def cut_out(
-    grey: Image,
-    m: Array,
-    half: int,
-    axes: Array,
-    reach: Array | None,
-    strip: Array | None = None,
+    grey: Image, m: Array, half: int, axes: Array, reach: Array | None, strip: Array | None = None
 ) -> tuple[Array, Window]:
     """Cut windows out around the pixels next to m, which are given too.
 

@@ -3,7 +3,7 @@
 from cvnotes.warping.interpolation import bilinear, interpolate
 from cvnotes.warping.maps import homography_map, plane_map, rotation_map, zoom_map
 from cvnotes.warping.pixel_map import PixelMap, compose, map_array
-from cvnotes.warping.undistortion import distortion_map, undistort_image, undistortion_map
+from cvnotes.warping.undistortion import undistort_image, undistortion_map
 from cvnotes.warping.warp import backward_warp, forward_warp, rectify_plane
 
 __all__ = [
@@ -20,6 +20,5 @@ __all__ = [
     "plane_map",
     "rectify_plane",
     "undistortion_map",
-    "distortion_map",
     "undistort_image",
 ]

@@ -94,7 +94,8 @@ def interpolate(
     """
     sampler = Sampler(image, method, border, fill)
     xy = positions(m, "m")
-    values = sampler(xy.reshape(-1, 2).T.copy())
+    values = np.empty((xy.size // 2, sampler.fill.size), sampler.dtype)
+    sampler.look_up(xy.reshape(-1, 2).T.copy(), values)
     return values.reshape(xy.shape[:-1] + sampler.channels)
 
 
@@ -133,12 +134,6 @@ class Sampler:
     def all_finite(self) -> bool:
         """Whether every pixel, and what fills, is a number."""
         return self.dtype.kind != "f" or all(np.isfinite(plane).all() for plane in self.planes)
-
-    def __call__(self, m: Array) -> Image:
-        """Return the picture at m (2, n), rows u and v, as (n, channels); m is written over."""
-        values = np.empty((m.shape[1], self.fill.size), self.dtype)
-        self.look_up(m, values)
-        return values
 
     @np.errstate(invalid="ignore")  # NaN and infinite pixels are passed on, not complained about
     def look_up(self, m: Array, values: Image) -> None:

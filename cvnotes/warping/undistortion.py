@@ -18,7 +18,7 @@ from cvnotes.base import (
     rotation,
     target_size,
 )
-from cvnotes.camera import Camera, px_from_xy
+from cvnotes.camera import Camera
 from cvnotes.warping.interpolation import Border, Method, Sampler
 from cvnotes.warping.pixel_map import PixelMap, factored
 from cvnotes.warping.warp import backward_warp
@@ -62,7 +62,8 @@ def undistortion_map(
     array([695., 240.])
     """
     new_A = camera.A if new_A is None else intrinsic_matrix(new_A, "new_A")
-    if R is None and _is_identity(camera, new_A):
+    # What moves nothing must not move it by rounding either.
+    if R is None and camera.lens.is_ideal and (new_A == camera.A).all():
         return PixelMap(lambda m_h: m_h[:2])
     to_real = np.eye(3) if R is None else _one_rotation(R).T
     ray, A = to_real @ np.linalg.inv(new_A), camera.A
@@ -75,32 +76,6 @@ def undistortion_map(
             xy /= z
         seen = camera.lens.distort.inside(camera.lens, xy.T)
         return A[:2, :2] @ seen.T + A[:2, 2:]
-
-    return PixelMap(columns)
-
-
-def distortion_map(camera: Camera, new_A: npt.ArrayLike | None = None) -> PixelMap:
-    """Map the pixels of the real camera's picture to those of an ideal camera's picture.
-
-    The inverse of `undistortion_map`: for a backward warp that puts a lens into a picture. It has
-    no closed form. Pixels that the lens model does not reach have no image.
-
-    Examples
-    --------
-    >>> from cvnotes.camera import Lens, intrinsics
-    >>> camera = Camera(intrinsics(800, 800, 320, 240), lens=Lens(k=(-0.25,)))
-    >>> distortion_map(camera)([695, 240]).round(9)
-    array([720., 240.])
-    """
-    new_A = camera.A if new_A is None else intrinsic_matrix(new_A, "new_A")
-
-    if _is_identity(camera, new_A):
-        return PixelMap(lambda m_h: m_h[:2])
-    to_sensor = np.linalg.inv(camera.A)[:2]
-
-    def columns(m_h: Array) -> Array:
-        ideal = camera.lens.undistort.inside(camera.lens, (to_sensor @ m_h).T)
-        return px_from_xy.inside(new_A, ideal).T
 
     return PixelMap(columns)
 
@@ -228,8 +203,3 @@ def _one_rotation(R: npt.ArrayLike) -> Array:
     if R.ndim != 2:
         raise ShapeError(f"R: expected one rotation (3, 3), got {R.shape}")
     return R
-
-
-def _is_identity(camera: Camera, new_A: Array) -> bool:
-    """Return whether nothing moves; then it must not move by rounding either."""
-    return camera.lens.is_ideal and bool((new_A == camera.A).all())

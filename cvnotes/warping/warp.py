@@ -156,11 +156,7 @@ def backward_warp(
 
 
 def rectify_plane(
-    image: npt.ArrayLike,
-    H: npt.ArrayLike,
-    region: npt.ArrayLike,
-    pixel: float,
-    **how: Any,
+    image: npt.ArrayLike, H: npt.ArrayLike, region: npt.ArrayLike, pixel: float, **how: Any
 ) -> Image:
     """Remove the perspective from the picture of a plane, as if it were seen from straight above.
 

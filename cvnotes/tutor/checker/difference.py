@@ -1,21 +1,14 @@
 """What a wrong answer and a right one differ by: measured, and named, in every exercise."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from cvnotes.base import Array, CvnotesError
-from cvnotes.tutor.checker.equality import (
-    AS_NEAR,
-    Same,
-    close,
-    same_motion,
-    tolerance,
-    up_to_scale,
-)
+from cvnotes.tutor.checker.equality import AS_NEAR, Same, close, same_motion, tolerance, up_to_scale
 from cvnotes.tutor.checker.wrong_answer import Found, Tried, WrongAnswer
 
 Pair = tuple[Array, Array]
@@ -195,30 +188,21 @@ def _truths(pairs: Sequence[Pair]) -> Found | None:
     if not np.isin(answers, (0, 1)).all():
         said = "True or False is asked, or 1 and 0 for them; yours are other numbers."
         return Found("neither True nor False", said) if np.isfinite(answers).all() else None
-    if (answers == 1 - rights).all():
-        return Found("the other way round", "You say True where it is False, and False for True.")
-    if answers.all():
-        return Found("always True", "You say True always.")
-    if not answers.any():
-        return Found("always False", "You say False always.")
-    if (answers >= rights).all():
-        return Found("True too often", f"You say True too often: {_where(pairs)} is False.")
-    if (answers <= rights).all():
-        return Found("False too often", f"You say False too often: {_where(pairs)} is True.")
+    for name, said, is_so in (
+        ("the other way round", "True where it is False, and False for True", answers != rights),
+        ("always True", "True always", answers == 1),
+        ("always False", "False always", answers == 0),
+        ("True too often", f"True too often: {_where(pairs)} is False", answers >= rights),
+        ("False too often", f"False too often: {_where(pairs)} is True", answers <= rights),
+    ):
+        if is_so.all():
+            return Found(name, f"You say {said}.")
     return None
 
 
 def _where(pairs: Sequence[Pair]) -> str:
     answer, right = pairs[0]
     return f"entry [{int(np.flatnonzero(answer.ravel() != right.ravel())[0])}], counted from 0,"
-
-
-def _flipped(axis: int) -> Change:
-    return lambda a: np.flip(a, axis)
-
-
-def _moved_on(axis: int, step: int) -> Change:
-    return lambda a: np.roll(a, step, axis)
 
 
 def _sign(wrong: _Wrong) -> Found | None:
@@ -228,70 +212,52 @@ def _sign(wrong: _Wrong) -> Found | None:
         return Found("sign", "Your answer is right but for its sign: it is the right one times −1.")
     if all(right.size > 1 for _, right in wrong.pairs) and wrong.equal(np.abs):
         return Found(
-            "signs of some numbers",
-            f"The sizes are right, but signs are wrong{_entries(wrong)}.",
+            "signs of some numbers", f"The sizes are right, but signs are wrong{_entries(wrong)}."
         )
     return None
 
 
 def _order(wrong: _Wrong) -> Found | None:
     dimensions = {answer.ndim for answer, _ in wrong.pairs}
-    if dimensions == {2} and (found := _turned(wrong)):
-        return found
-    if dimensions == {0}:
-        return None
-    for axis, what in ((-1, "columns" if dimensions != {1} else "entries"), (0, "rows")):
-        if wrong.right_after(_flipped(axis)):
-            return Found(
-                f"{what} in the opposite order",
-                f"The {what} are the right ones, in the opposite order.",
-            )
-        if any(wrong.right_after(_moved_on(axis, step)) for step in (1, -1)):
-            return Found(
-                f"{what} moved on",
-                f"The {what} are the right ones, moved on by one place.",
-            )
-    if wrong.right_after(_refilled):
-        return Found(
-            "reshaped for transposed",
-            "The numbers are right, but in the wrong places: reshape fills row by row, it does "
-            "not transpose. Take .T.",
-        )
-    if dimensions == {2} and wrong.equal(_sorted_rows):
+    for name, sentence, *changes in _other_ways_round(wrong, dimensions):
+        if any(wrong.right_after(change) for change in changes):
+            return Found(name, sentence)
+    if dimensions == {2} and wrong.equal(lambda a: a[np.lexsort(np.round(a, 6).T)]):
         return Found("rows in another order", "The rows are the right ones, in another order.")
-    if all(answer.size > 1 for answer, _ in wrong.pairs) and wrong.equal(_sorted):
+    if all(answer.size > 1 for answer, _ in wrong.pairs) and wrong.equal(
+        lambda a: np.sort(a, None)
+    ):
         return Found("another order", "The numbers are the right ones, in another order.")
     return None
 
 
-def _turned(wrong: _Wrong) -> Found | None:
-    """Return whether square matrices are the transpose, or the inverse, of the right ones."""
-    if any(answer.shape[0] != answer.shape[1] for answer, _ in wrong.pairs):
-        return None
-    if wrong.right_after(np.transpose):
-        return Found("transposed", "Your answer is the transpose of the right one.")
-    if any(np.linalg.matrix_rank(answer) < len(answer) for answer, _ in wrong.pairs):
-        return None
-    if wrong.right_after(np.linalg.inv):
-        return Found("the inverse", "Your answer is the inverse of the right one.")
-    if wrong.right_after(lambda a: np.linalg.inv(a).T):
-        return Found(
-            "the inverse transposed", "Your answer is the inverse transpose of the right one."
-        )
-    return None
+def _other_ways_round(wrong: _Wrong, dimensions: set[int]) -> Iterator[tuple[Any, ...]]:
+    """Yield what may have happened to an answer as a whole: name, sentence, and what undoes it."""
+    answers = [answer for answer, _ in wrong.pairs]
+    if dimensions == {2} and all(a.shape[0] == a.shape[1] for a in answers):
+        yield "transposed", "Your answer is the transpose of the right one.", np.transpose
+        if all(np.linalg.matrix_rank(a) == len(a) for a in answers):
+            yield "the inverse", "Your answer is the inverse of the right one.", np.linalg.inv
+            sentence = "Your answer is the inverse transpose of the right one."
+            yield "the inverse transposed", sentence, lambda a: np.linalg.inv(a).T
+    if dimensions == {0}:
+        return
+    for axis, what in ((-1, "columns" if dimensions != {1} else "entries"), (0, "rows")):
+        right = f"The {what} are the right ones"
+        flip, roll = partial(np.flip, axis=axis), partial(np.roll, axis=axis)
+        yield f"{what} in the opposite order", f"{right}, in the opposite order.", flip
+        steps = partial(roll, shift=1), partial(roll, shift=-1)
+        yield f"{what} moved on", f"{right}, moved on by one place.", *steps
+    sentence = (
+        "The numbers are right, but in the wrong places: reshape fills row by row, it does not "
+        "transpose. Take .T."
+    )
+    yield "reshaped for transposed", sentence, _refilled
 
 
 def _refilled(a: Array) -> Array:
     """Undo a reshape that stands where a transposition should."""
     return a.ravel().reshape(a.shape[::-1]).T if a.ndim == 2 else a
-
-
-def _sorted(x: Array) -> Array:
-    return np.sort(x, None)
-
-
-def _sorted_rows(x: Array) -> Array:
-    return np.asarray(x[np.lexsort(np.round(x, 6).T)])
 
 
 def _factor(wrong: _Wrong) -> Found | None:
@@ -502,7 +468,7 @@ def _entries(wrong: _Wrong) -> str:
     places = np.any([_wrong_entries(*pair) for pair in wrong.aligned], axis=0)
     if places.ndim > 2 or not 0 < places.sum() <= max(1, places.size // 3):
         return ""
-    named = [_index(i) for i in np.argwhere(places)]
+    named = (f"[{', '.join(map(str, i))}]" for i in np.argwhere(places).tolist())
     return f" in {', '.join(named)}"
 
 
@@ -523,10 +489,6 @@ def _wrong_entries(answer: Array, right: Array) -> Array:
     return ~np.asarray(
         (np.abs(answer - right) <= scale) | (np.isnan(answer) & np.isnan(right)) | (answer == right)
     )
-
-
-def _index(i: npt.NDArray[np.intp]) -> str:
-    return f"[{', '.join(map(str, i.tolist()))}]"
 
 
 def _some(wrong: _Wrong) -> Found | None:

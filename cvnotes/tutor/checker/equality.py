@@ -1,6 +1,7 @@
 """When two answers are equal, as mathematics has it: (answer, right, tolerance) → bool."""
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
@@ -90,11 +91,7 @@ def close_to(bound: float) -> Same:
     >>> close_to(1e-8)(np.array([1.0]), np.array([1.0 + 1e-7]), TOLERANCE)
     False
     """
-
-    def same(answer: Array, right: Array, tolerance: float) -> bool:
-        return close(answer, right, bound * tolerance / TOLERANCE)
-
-    return same
+    return lambda answer, right, tolerance: close(answer, right, bound * tolerance / TOLERANCE)
 
 
 def same_motion(answer: Array, right: Array, tolerance: float) -> bool:
@@ -153,11 +150,7 @@ def within(distance: float) -> Same:
     >>> within(10.0)(np.array([320.0, 96.0]), np.array([325.0, 92.0]), 1e-6)
     True
     """
-
-    def same(answer: Array, right: Array, _: float) -> bool:
-        return answer.shape == right.shape and bool(np.linalg.norm(answer - right) <= distance)
-
-    return same
+    return lambda answer, right, _: _no_farther(answer, right, distance)
 
 
 def within_part(part: float) -> Same:
@@ -168,10 +161,8 @@ def within_part(part: float) -> Same:
     >>> within_part(0.05)(np.array(9600.0), np.array(10_000.0), 1e-6)
     True
     """
+    return lambda answer, right, _: _no_farther(answer, right, part * np.linalg.norm(right))
 
-    def same(answer: Array, right: Array, _: float) -> bool:
-        return answer.shape == right.shape and bool(
-            np.linalg.norm(answer - right) <= part * np.linalg.norm(right)
-        )
 
-    return same
+def _no_farther(answer: Array, right: Array, most: Any) -> bool:
+    return answer.shape == right.shape and bool(np.linalg.norm(answer - right) <= most)

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from cvnotes.base import Array
-from cvnotes.tutor.checker.equality import AS_NEAR, TOLERANCE
+from cvnotes.tutor.checker.equality import AS_NEAR, TOLERANCE, Same
 from cvnotes.tutor.checker.foreseen import explains
 from cvnotes.tutor.checker.steps import Line, lines_of
 from cvnotes.tutor.checker.switches import KINDS, Slip, Switches
@@ -72,6 +72,11 @@ class Family:
             if a.setting[0][0] != b.setting[0][0] and a.kind == b.kind
         )
 
+    @property
+    def everywhere(self) -> tuple[Slip, ...]:
+        """Those that are made in several places alike."""
+        return tuple(slip for slip in self.slips if slip.everywhere)
+
     def found(self, slip: Slip) -> Found:
         """Put a slip into a name, a sentence without the formula, and the formula."""
         words = " and in ".join(dict.fromkeys(self.lines[i].words for i in slip.lines))
@@ -90,18 +95,29 @@ def slipped_step(answer: WrongAnswer) -> Found | None:
     if exercise.steps is None or outcome.value is None or outcome.value.size > _LARGEST:
         return None
     family = family_of(exercise.steps)
-    for slips in (family.slips, family.pairs):
-        gives = _results(family, _Arguments(case.args), pairs=slips is family.pairs)
-        for slip, given in zip(slips, gives, strict=True):
+    ways = {"slips": exercise.same, "pairs": exercise.same}
+    if any(np.isnan(case.right).any() for case, _ in answer.tried):
+        ways["everywhere"] = partial(_same_where_both_answer, exercise.same)
+    for which, same in ways.items():
+        for slip, given in _results(family, which, _Arguments(case.args)):
             if (
                 given is not None
                 and given.shape == outcome.value.shape
                 and not np.isnan(given).all()
-                and exercise.same(outcome.value, given, AS_NEAR * TOLERANCE)
-                and explains(family.gives(slip), answer, exercise.same)
+                and same(outcome.value, given, AS_NEAR * TOLERANCE)
+                and explains(family.gives(slip), answer, same)
             ):
                 return family.found(slip)
     return None
+
+
+def _same_where_both_answer(same: Same, answer: Array, given: Array, tolerance: float) -> bool:
+    """Return whether two answers are equal in all numbers that both have, and these are some.
+
+    A slip that was made everywhere may, on another road than the steps', move where answers end.
+    """
+    both = np.isfinite(answer) & np.isfinite(given)
+    return bool(both.any()) and same(answer[both], given[both], tolerance)
 
 
 class _Arguments:
@@ -119,11 +135,12 @@ class _Arguments:
 
 
 @lru_cache(maxsize=256)
-def _results(family: Family, given: _Arguments, *, pairs: bool = False) -> tuple[Array | None, ...]:
-    slips = family.pairs if pairs else family.slips
+def _results(family: Family, which: str, given: _Arguments) -> list[tuple[Slip, Array | None]]:
+    """Return some slips of a family, each with what it gives."""
+    slips: tuple[Slip, ...] = getattr(family, which)
     with np.errstate(all="ignore"), warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        return tuple(family.gives(slip)(*copy.deepcopy(given.args)) for slip in slips)
+        return [(slip, family.gives(slip)(*copy.deepcopy(given.args))) for slip in slips]
 
 
 @cache

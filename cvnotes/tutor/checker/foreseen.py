@@ -7,14 +7,7 @@ from typing import Any
 import numpy as np
 
 from cvnotes.base import Array, CvnotesError
-from cvnotes.tutor.checker.equality import (
-    AS_NEAR,
-    TOLERANCE,
-    Same,
-    close,
-    tolerance,
-    up_to_scale,
-)
+from cvnotes.tutor.checker.equality import AS_NEAR, TOLERANCE, Same, close, tolerance, up_to_scale
 from cvnotes.tutor.checker.exercise import Case
 from cvnotes.tutor.checker.wrong_answer import Found, WrongAnswer
 
@@ -93,3 +86,17 @@ def what_it_gives(function: Callable[..., Any], args: tuple[Any, ...]) -> Array 
         except (np.linalg.LinAlgError, CvnotesError, IndexError):
             return None
     return None if given is None else np.asarray(given, dtype=np.float64)
+
+
+def if_it_gives(function: Callable[..., Any], args: tuple[Any, ...]) -> Array | None:
+    """Return the same of a function that may raise whatever it wants; None then.
+
+    Examples
+    --------
+    >>> if_it_gives(lambda x: x.nothing, (np.zeros(2),)) is None
+    True
+    """
+    try:
+        return what_it_gives(function, args)
+    except Exception:
+        return None

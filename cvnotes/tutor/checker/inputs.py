@@ -86,14 +86,10 @@ def slips_of(
     for i, j in combinations(range(len(args)), 2):
         if np.shape(args[i]) == np.shape(args[j]) and not isinstance(args[i], tuple):
             a, b = names[i], names[j]
-            exchanged, a_for_b, b_for_a = (
-                partial(_exchanged, i, j),
-                partial(_copied, i, j),
-                partial(_copied, j, i),
-            )
+            exchanged = partial(_taken, {i: j, j: i})
             yield f"{a} and {b} exchanged", f"exchanged {a} and {b}", exchanged
-            yield f"{a} for {b}", f"used {a} in place of {b}", a_for_b
-            yield f"{b} for {a}", f"used {b} in place of {a}", b_for_a
+            yield f"{a} for {b}", f"used {a} in place of {b}", partial(_taken, {j: i})
+            yield f"{b} for {a}", f"used {b} in place of {a}", partial(_taken, {i: j})
     rows = [name for name, x in zip(names, args, strict=True) if np.ndim(x) > 1]
     for n in range(1, 5) if _in_rows(args) else ():
         what = f"the first {n if n > 1 else 'one'} of {' and '.join(rows)}"
@@ -115,16 +111,9 @@ def _first_ones(n: int, *args: Any) -> tuple[Any, ...]:
     return tuple(x[:n] if np.ndim(x) > 1 else x for x in args)
 
 
-def _exchanged(i: int, j: int, *args: Any) -> tuple[Any, ...]:
-    given = list(args)
-    given[i], given[j] = given[j], given[i]
-    return tuple(given)
-
-
-def _copied(source: int, target: int, *args: Any) -> tuple[Any, ...]:
-    given = list(args)
-    given[target] = given[source]
-    return tuple(given)
+def _taken(sources: dict[int, int], *args: Any) -> tuple[Any, ...]:
+    """Take some arguments from other places: {to: from}."""
+    return tuple(args[sources.get(i, i)] for i in range(len(args)))
 
 
 def _changed(i: int, change: Callable[[Any], Any], *args: Any) -> tuple[Any, ...]:
@@ -142,10 +131,22 @@ def _changes(name: str, arg: Any) -> Iterator[Iterable[Slip]]:
     elif isinstance(arg, np.ndarray) and arg.ndim == 1:
         yield _VECTOR
         if arg.size <= 6:
-            yield (_one_left_out(j) for j in range(arg.size))
-            yield (_two_exchanged(i, j) for i, j in combinations(range(arg.size), 2))
+            yield (
+                Slip(f"{{0}}[{j}] left out", f"left out {{0}}[{j}], or took 0 for it",
+                     partial(_without, j))
+                for j in range(arg.size)
+            )  # fmt: skip
+            yield (
+                Slip(f"{{0}}[{i}] and {{0}}[{j}] exchanged", f"exchanged {{0}}[{i}] and {{0}}[{j}]",
+                     partial(_rearranged, {i: j, j: i}))
+                for i, j in combinations(range(arg.size), 2)
+            )  # fmt: skip
         if arg.size <= 3:
-            yield (_one_for_another(i, j) for i, j in permutations(range(arg.size), 2))
+            yield (
+                Slip(f"{{0}}[{i}] for {{0}}[{j}]", f"used {{0}}[{i}] in place of {{0}}[{j}]",
+                     partial(_rearranged, {j: i}))
+                for i, j in permutations(range(arg.size), 2)
+            )  # fmt: skip
     elif isinstance(arg, np.ndarray) and arg.ndim == 2:
         if name == "A":
             yield _INTRINSICS
@@ -154,6 +155,14 @@ def _changes(name: str, arg: Any) -> Iterator[Iterable[Slip]]:
         if arg.shape[0] == arg.shape[1]:
             yield _SQUARE
         yield _ROWS
+
+
+def _without(j: int, x: Array) -> Array:
+    return np.where(np.arange(len(x)) == j, 0, x)
+
+
+def _rearranged(sources: dict[int, int], x: Array) -> Array:
+    return np.array(_taken(sources, *x))
 
 
 def _used(name: str, instead: str, change: Callable[[Any], Any]) -> Slip:
@@ -230,7 +239,7 @@ _ROWS = (
     Slip("the last row for all of {0}", "used the last row of {0} for all of its rows",
          lambda x: 0 * x + x[-1:]),
     Slip("sign of the second column of {0}", "changed the sign of the second column of {0}",
-         lambda x: _flip(x)),
+         lambda x: x * np.where(np.arange(x.shape[1]) == 1, -1.0, 1.0)),
     _used("{0} about its mean", "{0} − {0}.mean(axis=0)", lambda x: x - x.mean(0)),
     _used("{0} less the mean of all its numbers", "{0} − {0}.mean()", lambda x: x - x.mean()),
     Slip("{0} without decimals", "cut off the decimals of {0}", np.trunc),
@@ -241,49 +250,10 @@ _ROWS = (
     _used("{0} moved by 1", "{0} + 1", lambda x: x + 1),
     _used("{0} moved back by 1", "{0} − 1", lambda x: x - 1),
     Slip("rows scaled to length 1 in {0}", "scaled each row of {0} to length 1",
-         lambda x: _rows_unit(x)),
+         lambda x: x / np.linalg.norm(x, axis=1, keepdims=True)),
     Slip("{0} divided by its last column", "divided {0} by its last column, {0}[:, -1:]",
          lambda x: x / x[:, -1:]),
 )  # fmt: skip
-
-
-def _flip(x: Array) -> Array:
-    signs = np.ones(x.shape[1])
-    signs[1:2] = -1
-    return np.asarray(x * signs)
-
-
-def _rows_unit(x: Array) -> Array:
-    return np.asarray(x / np.linalg.norm(x, axis=1, keepdims=True))
-
-
-def _one_left_out(j: int) -> Slip:
-    def change(x: Array) -> Array:
-        x = np.array(x)
-        x[j] = 0
-        return x
-
-    return Slip(f"{{0}}[{j}] left out", f"left out {{0}}[{j}], or took 0 for it", change)
-
-
-def _two_exchanged(i: int, j: int) -> Slip:
-    def change(x: Array) -> Array:
-        x = np.array(x)
-        x[[i, j]] = x[[j, i]]
-        return x
-
-    what = f"{{0}}[{i}] and {{0}}[{j}]"
-    return Slip(f"{what} exchanged", f"exchanged {what}", change)
-
-
-def _one_for_another(i: int, j: int) -> Slip:
-    def change(x: Array) -> Array:
-        x = np.array(x)
-        x[j] = x[i]
-        return x
-
-    what = f"{{0}}[{i}] in place of {{0}}[{j}]"
-    return Slip(f"{{0}}[{i}] for {{0}}[{j}]", f"used {what}", change)
 
 
 ENTRIES_OF_A = {"α_u": (0, 0), "α_v": (1, 1), "u0": (0, 2), "v0": (1, 2), "γ": (0, 1)}

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from cvnotes.base import Array
+from cvnotes.base.text import clipped
 from cvnotes.tutor.checker.parsing import parsed
 
 _LIBRARIES = ("np", "numpy", "math", "scipy", "linalg", "cv2")
@@ -88,7 +89,7 @@ class Instrumented:
         if self._put is None:
             seen = self._seen.setdefault(number, [])
             if len(seen) < _ROUNDS:
-                seen.append(_noted(value))
+                seen.append(numbers_in(value))
             return value
         if number not in self._put:
             return value
@@ -194,8 +195,7 @@ class _Marking(ast.NodeTransformer):
 
     def _text(self, node: ast.AST) -> str:
         text = ast.get_source_segment(self.source, node) or ast.unparse(node)
-        text = " ".join(text.split())
-        return text if len(text) <= _LONGEST else f"{text[: _LONGEST - 1]}…"
+        return clipped(" ".join(text.split()), _LONGEST)
 
     def _look(self, node: Any, text: str) -> ast.Call:
         own = len(self.text)
@@ -241,7 +241,8 @@ def _closed_over(function: Callable[..., Any]) -> dict[str, Any]:
     return found
 
 
-def _noted(value: Any) -> Array | None:
+def numbers_in(value: Any) -> Array | None:
+    """Return a copy of a value as numbers; None if it is none, or too much to be compared."""
     if not isinstance(value, int | float | np.ndarray | np.generic | list | tuple):
         return None
     try:

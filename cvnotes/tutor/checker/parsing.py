@@ -20,3 +20,8 @@ def parsed(source: str) -> ast.Module:
     """
     with _ONE_AT_A_TIME:
         return ast.parse(source)
+
+
+def is_set(node: ast.Name) -> bool:
+    """Return whether a name is given a value where it stands."""
+    return isinstance(node.ctx, ast.Store)

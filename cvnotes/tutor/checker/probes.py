@@ -13,6 +13,7 @@ import numpy as np
 from cvnotes.base import Array
 from cvnotes.tutor.checker.equality import TOLERANCE, close, disturbed
 from cvnotes.tutor.checker.exercise import Case, Exercise
+from cvnotes.tutor.checker.foreseen import if_it_gives
 from cvnotes.tutor.checker.inputs import ENTRIES_OF_A, slips_of, with_inputs
 from cvnotes.tutor.checker.sandbox import run
 from cvnotes.tutor.checker.wrong_answer import Found
@@ -90,7 +91,7 @@ def _found(
 ) -> Array:
     """Return the numbers of what can be said and of the changes; empty if nothing can."""
     same = exercise.same
-    answers = [(case, _numbers(function, case.args)) for case in cases]
+    answers = [(case, if_it_gives(function, case.args)) for case in cases]
     wrong = [
         (case, mine)
         for case, mine in answers
@@ -144,8 +145,8 @@ def _asked(
         apart = [i for i, x in enumerate(args) if not np.array_equal(x, case.args[i])]
         if not apart:
             continue
-        right = _numbers(with_inputs(change, exercise.reference), case.args)
-        new, i = _numbers(function, args), apart[0]
+        right = if_it_gives(with_inputs(change, exercise.reference), case.args)
+        new, i = if_it_gives(function, args), apart[0]
         if apart[1:] or any(np.array_equal(args[i], old) for old in case.args):
             return []  # one for another is no simpler input
         if right is None or new is None or not np.isfinite([*right.flat, *mine.flat]).all():
@@ -178,13 +179,3 @@ def _with_others(i: int, place: Any, *args: Any) -> tuple[Any, ...]:
     new = np.array(args[i])
     new[place] = disturbed(new[place])
     return (*args[:i], new if new.ndim else new.item(), *args[i + 1 :])
-
-
-def _numbers(function: Callable[..., Any], args: tuple[Any, ...]) -> Array | None:
-    copies = [np.array(x) if isinstance(x, np.ndarray) else x for x in args]
-    try:
-        with np.errstate(all="ignore"):
-            given = function(*copies)
-        return None if given is None else np.asarray(given, dtype=np.float64)
-    except Exception:  # whatever other inputs lead to
-        return None

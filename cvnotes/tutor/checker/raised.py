@@ -8,29 +8,23 @@ from cvnotes.tutor.checker.wrong_answer import Found, WrongAnswer
 def without_numbers(answer: WrongAnswer) -> Found | None:
     """Name what came in place of numbers, on the case that the student sees."""
     _, outcome = answer.shown
-    match outcome.kind:
-        case "raised":
-            # The student's own line, quoted behind it, has words of its own.
-            said = outcome.words.partition(", in the line `")[0]
-            for pattern, name, sentence in RAISED:
-                if re.search(pattern, said):
-                    return Found(name, f"{answer.why} {sentence}")
-            return None
-        case "other" if "not called" in outcome.words:
-            name = "not called"
-        case "other" if "complex" in outcome.words:
-            name = "complex numbers"
-        case "other":
-            name = "no array of numbers"
-        case "text":
-            name = "none of the choices" if answer.exercise.choices else "a text for numbers"
-        case "none":
-            name = "nothing returned"
-        case "late":
-            name = "never ends"
-        case _:
-            return None
-    return Found(name, answer.why)
+    if outcome.kind == "raised":
+        # The student's own line, quoted behind it, has words of its own.
+        said = outcome.words.partition(", in the line `")[0]
+        for pattern, name, sentence in RAISED:
+            if re.search(pattern, said):
+                return Found(name, f"{answer.why} {sentence}")
+    names = {
+        "other": "no array of numbers",
+        "text": "none of the choices" if answer.exercise.choices else "a text for numbers",
+        "none": "nothing returned",
+        "late": "never ends",
+    }
+    if outcome.kind == "other" and "not called" in outcome.words:
+        names["other"] = "not called"
+    elif outcome.kind == "other" and "complex" in outcome.words:
+        names["other"] = "complex numbers"
+    return Found(names[outcome.kind], answer.why) if outcome.kind in names else None
 
 
 # What Python and NumPy say of a slip that has a name; the first that fits counts.

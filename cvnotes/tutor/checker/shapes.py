@@ -1,6 +1,7 @@
 """Answers of another shape than asked: how the numbers were laid out, measured where it can be."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
+from itertools import permutations
 from typing import Any
 
 import numpy as np
@@ -13,6 +14,7 @@ from cvnotes.tutor.checker.wrong_answer import Found, WrongAnswer
 
 # What is compared: two arrays of one shape, equal or not.
 Equal = Callable[[Array, Array], bool]
+Fits = Callable[[Array, Array, Equal], bool]
 Shape = tuple[int, ...]
 
 
@@ -82,166 +84,90 @@ def _one_for_each_point(exercise: Exercise, case: Case) -> bool:
     )
 
 
-def _fits(
-    fits: Callable[[Array, Array, Equal], bool],
-    answer: Array,
-    right: Array,
-    same: Same,
-    bound: float,
-) -> bool:
+def _fits(fits: Fits, answer: Array, right: Array, same: Same, bound: float) -> bool:
     def equal(a: Array, b: Array) -> bool:
         if a.shape == right.shape:
             return same(a, b, bound)
-        if a.shape != b.shape or not np.array_equal(np.isnan(a), np.isnan(b)):
-            return False
         size = float(np.abs(right[np.isfinite(right)]).max(initial=0.0)) or 1e-3
-        return np.allclose(a, b, rtol=0, atol=bound * size, equal_nan=True)
+        alike = a.shape == b.shape
+        return alike and np.allclose(a, b, rtol=0, atol=bound * size, equal_nan=True)
 
     with np.errstate(all="ignore"):
         return bool(answer.size and fits(answer, right, equal))
 
 
-def _turned(a: Array, right: Array, equal: Equal) -> bool:
-    """Return whether the axes are in another order."""
-    if a.ndim != right.ndim or a.ndim < 2:
-        return False
-    orders = [(1, 0)] if a.ndim == 2 else [(1, 0, 2), (2, 1, 0), (2, 0, 1), (1, 2, 0), (0, 2, 1)]
-    turned = (np.transpose(a, order) for order in orders if len(order) == a.ndim)
-    return any(x.shape == right.shape and equal(x, right) for x in turned)
+def _any_of(pairs: Callable[[Array, Array], Iterable[tuple[Array, Any]]]) -> Fits:
+    """Return whether an answer, or a part of it, is a right one, or a part of that."""
+    return lambda a, r, equal: any(equal(x, np.asarray(y)) for x, y in pairs(a, r))
 
 
-def _column(a: Array, right: Array, equal: Equal) -> bool:
-    return a.shape == (*right.shape, 1) and right.ndim > 0 and equal(a[..., 0], right)
+def _reshaped(a: Array, r: Array, orders: str = "CF") -> Iterator[tuple[Array, Array]]:
+    if a.size == r.size:
+        yield from ((a.reshape(r.shape, order=order), r) for order in orders)  # type: ignore[call-overload]
 
 
-def _in_brackets(a: Array, right: Array, equal: Equal) -> bool:
-    return a.size == right.size and a.ndim > right.ndim and equal(a.reshape(right.shape), right)
-
-
-def _flat(a: Array, right: Array, equal: Equal) -> bool:
-    if a.ndim != 1 or a.size != right.size or right.ndim < 2:
-        return False
-    return any(equal(a.reshape(right.shape, order=order), right) for order in ("C", "F"))
-
-
-def _rearranged(a: Array, right: Array, equal: Equal) -> bool:
-    return a.size == right.size and any(
-        equal(a.reshape(right.shape, order=order), right) for order in ("C", "F", "A")
-    )
-
-
-def _homogeneous(a: Array, right: Array, equal: Equal) -> bool:
-    if not _wider(a, right):
-        return False
+def _dehomogenised(a: Array) -> Array:
     finite = np.abs(a[..., -1:]) > 1e-12 * np.abs(a).max()
-    return equal(np.where(finite, a[..., :-1] / a[..., -1:], np.nan), right)
-
-
-def _lifted(a: Array, right: Array, equal: Equal) -> bool:
-    return _wider(a, right) and bool((a[..., -1] == 1).all()) and equal(a[..., :-1], right)
-
-
-def _wider(a: Array, right: Array) -> bool:
-    return a.ndim == right.ndim > 0 and a.shape == (*right.shape[:-1], right.shape[-1] + 1)
-
-
-def _too_wide(a: Array, right: Array, equal: Equal) -> bool:
-    if a.ndim != right.ndim or right.ndim == 0 or a.shape[:-1] != right.shape[:-1]:
-        return False
-    n = right.shape[-1]
-    return a.shape[-1] > n and (equal(a[..., :n], right) or equal(a[..., -n:], right))
-
-
-def _too_narrow(a: Array, right: Array, equal: Equal) -> bool:
-    if a.ndim != right.ndim or right.ndim == 0 or a.shape[:-1] != right.shape[:-1]:
-        return False
-    n = a.shape[-1]
-    return n < right.shape[-1] and (equal(a, right[..., :n]) or equal(a, right[..., -n:]))
-
-
-def _first(a: Array, right: Array, equal: Equal) -> bool:
-    return _one_of(a, right, equal, 0)
-
-
-def _last(a: Array, right: Array, equal: Equal) -> bool:
-    return _one_of(a, right, equal, -1)
-
-
-def _one_of(a: Array, right: Array, equal: Equal, i: int) -> bool:
-    if right.ndim == 0 or len(right) < 2:
-        return False
-    one = right[i]
-    return a.shape in (one.shape, (1, *one.shape)) and equal(a.reshape(one.shape), one)
-
-
-def _rows_left_out(a: Array, right: Array, equal: Equal) -> bool:
-    return a.ndim == right.ndim > 0 and len(a) < len(right) and _within(a, right, equal)
-
-
-def _rows_too_many(a: Array, right: Array, equal: Equal) -> bool:
-    return a.ndim == right.ndim > 0 and len(a) > len(right) and _within(right, a, equal)
+    return np.where(finite, a[..., :-1] / a[..., -1:], np.nan)
 
 
 def _within(few: Array, many: Array, equal: Equal) -> bool:
     """Return whether the rows of one are among those of the other, in the same order."""
-    if few.shape[1:] != many.shape[1:]:
+    if not few.ndim == many.ndim > 0 or few.shape[1:] != many.shape[1:] or len(few) >= len(many):
         return False
     rows = iter(many)
     return all(any(equal(row, other) for other in rows) for row in few)
 
 
-def _diagonal(a: Array, right: Array, equal: Equal) -> bool:
-    return right.ndim == 2 and a.ndim == 1 and equal(a, np.diag(right))
-
-
-def _on_diagonal(a: Array, right: Array, equal: Equal) -> bool:
-    return right.ndim == 1 and a.shape == (len(right),) * 2 and equal(np.diag(a), right)
-
-
-def _whole(summary: Callable[[Array], Any]) -> Callable[[Array, Array, Equal], bool]:
-    def fits(a: Array, right: Array, equal: Equal) -> bool:
-        if right.size < 2 or not np.isfinite(right).all():
-            return False
-        return any(
-            np.shape(one) == a.shape and equal(a, np.asarray(one)) for one in _along(summary, right)
-        )
-
-    return fits
-
-
-def _along(summary: Callable[..., Any], right: Array) -> Iterator[Any]:
-    """Summarise everything, and each axis by itself."""
-    yield summary(right)
-    for axis in range(right.ndim):
-        yield np.apply_along_axis(summary, axis, right)
+def _whole(summary: Callable[..., Any]) -> Fits:
+    """Return whether one number, or one for each row or column, sums a right answer up."""
+    return _any_of(
+        lambda a, r: ((a, x) for x in (summary(r), *(np.apply_along_axis(summary, axis, r)
+                                                     for axis in range(r.ndim))))
+        if r.size > 1 and np.isfinite(r).all() else ()
+    )  # fmt: skip
 
 
 _SUMMARIES: tuple[tuple[str, Callable[[Array], Any]], ...] = (
     ("mean", np.mean), ("sum", np.sum), ("length", np.linalg.norm), ("largest", np.max),
     ("smallest", np.min),
 )  # fmt: skip
-_LAYOUTS: tuple[tuple[str, str, Callable[[Array, Array, Equal], bool]], ...] = (
-    ("transposed", "the numbers are right; an array has its rows first, so transpose it.", _turned),
+# How the numbers are laid out, and what of an answer a is then equal to what of a right one, r.
+_LAYOUTS: tuple[tuple[str, str, Fits], ...] = (
+    ("transposed", "the numbers are right; an array has its rows first, so transpose it.",
+     _any_of(lambda a, r: ((a.transpose(order), r) for order in permutations(range(r.ndim))
+                           if a.ndim == r.ndim))),
     ("a column, not a row", "the numbers are right, each in a bracket of its own: .ravel() or [:, "
-     "0] takes them out.", _column),
+     "0] takes them out.",
+     _any_of(lambda a, r: [(a[..., 0], r)] if r.ndim and a.shape == (*r.shape, 1) else ())),
     ("brackets too many", "the numbers are right, in too many brackets: take what is inside, or "
-     ".reshape.", _in_brackets),
+     ".reshape.", _any_of(lambda a, r: _reshaped(a, r, "C") if a.ndim > r.ndim else ())),
     ("all in one row", "the numbers are right, one after the other; see np.reshape, or leave out a "
-     "ravel, or give np.append and np.concatenate an axis.", _flat),
-    ("arranged otherwise", "the numbers are right, the arrangement is not.", _rearranged),
-    ("last coordinate kept", "the numbers are right, with a 1 too many: leave it out.", _lifted),
+     "ravel, or give np.append and np.concatenate an axis.",
+     _any_of(lambda a, r: _reshaped(a, r) if a.ndim == 1 < r.ndim else ())),
+    ("arranged otherwise", "the numbers are right, the arrangement is not.", _any_of(_reshaped)),
+    ("last coordinate kept", "the numbers are right, with a 1 too many: leave it out.",
+     _any_of(lambda a, r: [(a[..., :-1], r)] if a.ndim and (a[..., -1] == 1).all() else ())),
     ("still homogeneous", "still homogeneous? Divide by the last coordinate, then leave it out.",
-     _homogeneous),
-    ("columns too many", "the right numbers are among them; leave out the others.", _too_wide),
-    ("the first only", "only the first came back; is the return inside of a loop?", _first),
+     _any_of(lambda a, r: [(_dehomogenised(a), r)] if a.ndim else ())),
+    ("columns too many", "the right numbers are among them; leave out the others.",
+     _any_of(lambda a, r: ((x, r) for x in (a[..., : r.shape[-1]], a[..., -r.shape[-1] :]))
+             if a.ndim and r.ndim else ())),
+    ("the first only", "only the first came back; is the return inside of a loop?",
+     _any_of(lambda a, r: ((a, x) for x in (r[0], r[:1])) if r.ndim and len(r) > 1 else ())),
     ("the last only", "only the last came back; does each round of a loop overwrite the one "
-     "before?", _last),
-    ("columns left out", "what is there is right, but numbers are missing.", _too_narrow),
-    ("rows left out", "the rows are right, but some are missing: each of them is asked.",
-     _rows_left_out),
-    ("rows too many", "the right rows are among them, but there are more.", _rows_too_many),
-    ("the diagonal only", "that is the diagonal only.", _diagonal),
-    ("a matrix for its diagonal", "asked is the diagonal alone: see np.diag.", _on_diagonal),
+     "before?",
+     _any_of(lambda a, r: ((a, x) for x in (r[-1], r[-1:])) if r.ndim and len(r) > 1 else ())),
+    ("columns left out", "what is there is right, but numbers are missing.",
+     _any_of(lambda a, r: ((a, x) for x in (r[..., : a.shape[-1]], r[..., -a.shape[-1] :]))
+             if a.ndim and r.ndim else ())),
+    ("rows left out", "the rows are right, but some are missing: each of them is asked.", _within),
+    ("rows too many", "the right rows are among them, but there are more.",
+     lambda a, r, equal: _within(r, a, equal)),
+    ("the diagonal only", "that is the diagonal only.",
+     _any_of(lambda a, r: [(a, np.diag(r))] if r.ndim == 2 else ())),
+    ("a matrix for its diagonal", "asked is the diagonal alone: see np.diag.",
+     _any_of(lambda a, r: [(np.diag(a), r)] if a.shape == r.shape * 2 and r.ndim == 1 else ())),
     *((f"the {what}", f"that is the {what} of the right numbers; all of them are asked.",
        _whole(summary)) for what, summary in _SUMMARIES),
 )  # fmt: skip

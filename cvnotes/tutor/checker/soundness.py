@@ -90,14 +90,11 @@ def _of_the_text(exercise: Exercise) -> Iterator[str]:
                 break
     if not 2 <= len(set(exercise.hints)) <= 3:
         yield "two or three different hints are wanted"
-    sentences = [m.sentence for m in exercise.misconceptions]
-    for what, texts in (
-        ("names", [m.name for m in exercise.misconceptions]),
-        ("sentences", sentences),
-    ):
-        if len(set(texts)) < len(texts):
-            yield f"two mistakes have the same {what[:-1]}"
-    for text in [exercise.task, *sentences]:
+    listed = exercise.misconceptions
+    for what in ("name", "sentence"):
+        if len({getattr(mistake, what) for mistake in listed}) < len(listed):
+            yield f"two mistakes have the same {what}"
+    for text in [exercise.task, *(mistake.sentence for mistake in listed)]:
         if not text.endswith((".", "?", ".)", "”")):
             yield f"no sentence: {text[-40:]!r}"
 
@@ -131,10 +128,6 @@ def _of_slips(exercise: Exercise, seed: int) -> Iterator[str]:
             yield f"{slip} passes"
 
 
-def _without_the_last(x: Array) -> Array:
-    return x[..., :-1] if x.ndim else x * 2
-
-
 # Slips of an answer as a whole, by what they do to it.
 SLIPS: dict[str, Callable[[Array], Array]] = {
     "the right answer times −1": np.negative,
@@ -145,7 +138,7 @@ SLIPS: dict[str, Callable[[Array], Array]] = {
     "the right answer in reverse": lambda x: np.flip(x),
     "the right answer moved on by one place": lambda x: np.roll(x, 1),
     "the sizes of the right answer without signs": np.abs,
-    "the right answer without its last column": _without_the_last,
+    "the right answer without its last column": lambda x: x[..., :-1] if x.ndim else x * 2,
     "the right answer with one entry 1 % larger": lambda x: _one_larger(x),
 }
 

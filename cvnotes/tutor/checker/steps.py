@@ -33,16 +33,15 @@ from cvnotes.base import Array, CvnotesError
 from cvnotes.tutor.checker.equality import TOLERANCE, Same, disturbed, up_to_scale
 from cvnotes.tutor.checker.exercise import Exercise, Misconception, mistakes
 from cvnotes.tutor.checker.in_process import clock
-from cvnotes.tutor.checker.instrumented import Instrumented
-from cvnotes.tutor.checker.parsing import parsed
+from cvnotes.tutor.checker.instrumented import Instrumented, numbers_in
+from cvnotes.tutor.checker.parsing import is_set, parsed
 from cvnotes.tutor.checker.sandbox import run
 
 # Two values are equal if they are nearer than that, relative to their largest entry.
 _NEAR = 1e-7
 _INPUTS = 3
 _SEEDS = range(9001, 9007)
-# What a search may take, in seconds of the processor; and how many numbers a value has at most.
-_SECONDS, _LARGEST = 0.25, 4000
+_SECONDS = 0.25  # what a search may take, of the processor
 _TRIES = 1200
 # One run that takes longer is not repeated; and what all may take where it can be ended.
 _SLOW, _PATIENCE = 0.08, 1.0
@@ -105,14 +104,10 @@ def _line(statement: ast.stmt, rows: Sequence[str]) -> Line:
     if isinstance(statement, ast.Return):
         name, words = "the answer", "what is returned"
     else:
-        names = [n.id for n in ast.walk(statement) if isinstance(n, ast.Name) and _is_set(n)]
+        names = [n.id for n in ast.walk(statement) if isinstance(n, ast.Name) and is_set(n)]
         name, words = ", ".join(dict.fromkeys(names)), ""
-    reads = {n.id for n in ast.walk(statement) if isinstance(n, ast.Name) and not _is_set(n)}
+    reads = {n.id for n in ast.walk(statement) if isinstance(n, ast.Name) and not is_set(n)}
     return Line(name, said[1].strip() if said else words or f"`{name}`", code, frozenset(reads))
-
-
-def _is_set(node: ast.Name) -> bool:
-    return isinstance(node.ctx, ast.Store)
 
 
 def edited(steps: Callable[..., Any], *changes: str) -> Callable[..., Any]:
@@ -219,13 +214,13 @@ def _traced(exercise: Exercise) -> tuple[list[Line], list[_Trace]]:
                 if names_set[1:]:  # and all of them, as one array
                     values = {lines[i].name: list(values.values()), **values}
                 for name, given in values.items():
-                    value = _numbers(given)
+                    value = numbers_in(given)
                     if value is None:
                         continue
                     parts = _parts(value) if "," not in name else []
                     for part, one in enumerate([value, *parts]):
                         says = one if part else given
-                        found[i, name, part] = one.copy(), not _says_nothing(says, args)
+                        found[i, name, part] = one, not _says_nothing(says, args)
             right = np.asarray(exercise.reference(*copy.deepcopy(args)), dtype=np.float64)
         traces.append((args, found, right))
     # A number may be one of the input's by chance, on one of them.
@@ -273,24 +268,13 @@ def _spelled(args: Sequence[Any]) -> list[Any]:
     return [np.asarray(x).tolist() for x in args]
 
 
-def _numbers(value: Any) -> Array | None:
-    """Return a value as numbers; None if it is none, or too much to be compared."""
-    if not isinstance(value, int | float | np.ndarray | np.generic | list | tuple):
-        return None
-    try:
-        array = np.asarray(value, dtype=np.float64)
-    except (ValueError, TypeError):
-        return None
-    return array if 0 < array.size <= _LARGEST else None
-
-
 def _says_nothing(value: Any, args: Sequence[Any]) -> bool:
     """Return whether being equal to zeros, ones, counts, or numbers of the input proves nothing."""
     if np.isin(value, (-1, 0, 1)).all() or not np.isfinite(value).any():
         return True
     if np.asarray(value).dtype.kind in "iub":
         return True
-    given = [_numbers(x) for x in args]
+    given = [numbers_in(x) for x in args]
     return any(x is not None and np.isin(value, x).all() for x in given)
 
 
@@ -407,7 +391,7 @@ def _proven(
     """Return the number of the earliest step that makes the rest right, and the expression."""
 
     def right(answer: Any, trace: _Trace) -> bool:
-        value = _numbers(answer)
+        value = numbers_in(answer)
         return value is not None and exercise.same(value, trace.right, TOLERANCE)
 
     if not traces or all(right(own(trace.args), trace) for trace in traces):
@@ -441,7 +425,7 @@ def _is_innocent(
     """Return whether an expression is right as it is: an input, or one of the steps."""
     pairs = [(values[e], trace) for trace, values in zip(traces, seen, strict=True) if e in values]
     given = zip(*(trace.args for _, trace in pairs), strict=True)
-    inputs = ([_numbers(x) for x in one] for one in given)
+    inputs = ([numbers_in(x) for x in one] for one in given)
     steps = zip(*((array for _, _, array in trace.steps) for _, trace in pairs), strict=True)
     return any(
         all(

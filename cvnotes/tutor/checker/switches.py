@@ -11,9 +11,11 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from functools import cache
 from itertools import combinations
-from typing import Any, NamedTuple, TypeVar
+from typing import Any, NamedTuple
 
 import numpy as np
+
+from cvnotes.tutor.checker.parsing import is_set
 
 # What slips, the likely ones first: what is said of a slip, {0} is where; and what puts code right.
 KINDS = {
@@ -52,7 +54,6 @@ _SHORT = 16
 # A form is another expression, or another function of what two operands give.
 Form = tuple[str, ast.expr]
 Applied = Callable[[Any, Any], Any]
-_Node = TypeVar("_Node", bound=ast.AST)
 
 
 class Slip(NamedTuple):
@@ -85,7 +86,7 @@ class Switches:
         self._found: list[Slip] = []
         self._turned: list[Slip] = []
         self._nodes: list[tuple[ast.AST, ast.AST | None, Sequence[ast.AST | str]]] = []
-        self._applied: dict[int, list[Applied]] = {}
+        self._operations: dict[int, list[Applied]] = {}
         self._alike: dict[tuple[str, str, str], list[tuple[int, int, int]]] = {}
 
     def switched(self, function: ast.FunctionDef) -> ast.FunctionDef:
@@ -98,7 +99,7 @@ class Switches:
         made.returns, made.decorator_list = None, []
         for argument in function.args.args:
             argument.annotation = None
-        return made
+        return ast.fix_missing_locations(made)
 
     @property
     def names(self) -> dict[str, Any]:
@@ -146,14 +147,28 @@ class Switches:
         form = self.places[place]
         if form and len(operands) == 1 and isinstance(operands[0], list | tuple):
             operands = (np.asarray(operands[0]),)
-        return self._applied[place][form](*operands)
+        return self._operations[place][form](*operands)
 
     def _place(
-        self, node: ast.AST, others: Sequence[ast.AST | str], parent: ast.AST | None = None
+        self,
+        node: ast.AST,
+        forms: Sequence[tuple[str, ast.AST | str]],
+        parent: ast.AST | None = None,
+        shape: str = "",
+        slips: list[Slip] | None = None,
     ) -> int:
+        """Put a switch at a node, and note its slips; those of one shape may be made everywhere."""
+        place = len(self.places)
         self.places.append(0)
-        self._nodes.append((node, parent, others))
-        return len(self.places) - 1
+        self._nodes.append((node, parent, [other for _, other in forms]))
+        for form, (kind, other) in enumerate(forms, 1):
+            slip = Slip(kind, (self._line,), ((place, form),))
+            (self._found if slips is None else slips).append(slip)
+            after = other if isinstance(other, str) else _shape(other)
+            if shape and after:
+                alike = self._alike.setdefault((kind, shape, after), [])
+                alike.append((self._line, place, form))
+        return place
 
     def _asked(self, place: int, form: int) -> ast.expr:
         switch = ast.Subscript(ast.Name("_form_", ast.Load()), ast.Constant(place), ast.Load())
@@ -173,26 +188,24 @@ class Switches:
             self._set[new.targets[0].id] = i
         if isinstance(new, ast.Return) and new.value is not None:
             new.value = self._stopped(new.value)
-        return _placed(new)
+        return new
 
     def _stopped(self, returned: ast.expr) -> ast.expr:
         """Let what one of the lines gives come back in place of the answer."""
         others = {name: ast.Name(name, ast.Load()) for name in self._set}
-        place = self._place(returned, list(others.values()))
+        place = self._place(returned, [("", other) for other in others.values()], slips=[])
         for form, (name, line) in enumerate(self._set.items(), 1):
             self._found.append(Slip("stopped", (line,), ((place, form),)))
-            returned = _placed(ast.IfExp(self._asked(place, form), others[name], returned))
+            returned = ast.IfExp(self._asked(place, form), others[name], returned)
         return returned
 
     def _exchanged(self, statement: ast.Assign, names: ast.Tuple) -> ast.stmt:
         """Let two names on the left be in the other order."""
         if len(names.elts) != 2:
-            return _placed(statement)
+            return statement
         turned = ast.Tuple(names.elts[::-1], ast.Store())
-        place = self._place(names, [turned])
-        self._note("order", place, 1)
-        other = ast.Assign([turned], statement.value)
-        return _placed(ast.If(self._asked(place, 1), [other], [statement]))
+        asked = self._asked(self._place(names, [("order", turned)]), 1)
+        return ast.If(asked, [ast.Assign([turned], statement.value)], [statement])
 
     def _moved(self, old: Sequence[ast.stmt], body: list[ast.stmt]) -> list[ast.stmt]:
         """Let lines that set a name anew be left out, or come after the next one."""
@@ -200,20 +213,16 @@ class Switches:
         known = set(self._names)
         seen: set[str] = set()
         for i, statement in enumerate(old):
-            sets = {n.id for n in ast.walk(statement) if isinstance(n, ast.Name) and _is_set(n)}
+            sets = {n.id for n in ast.walk(statement) if isinstance(n, ast.Name) and is_set(n)}
             again, seen = sets & seen & known, seen | sets
-            if again and not isinstance(statement, ast.Return):
-                self._line, left_out = i, self._place(statement, [ast.Pass()])
-                self._note("line left out", left_out, 1)
-                test = self._asked(left_out, 1)
-                body[i] = _placed(ast.If(test, [ast.Pass()], [body[i]]))
-            if again and i and not isinstance(statement, ast.Return):
-                early = self._place(statement, [statement])
-                self._note("line too early", early, 1)
-                both, turned = [new[-1], body[i]], [body[i], new[-1]]
-                new[-1] = _placed(ast.If(self._asked(early, 1), turned, both))
-            else:
-                new.append(body[i])
+            self._line, line = i, body[i]
+            if not again or isinstance(statement, ast.Return):
+                new.append(line)
+                continue
+            left_out = self._asked(self._place(statement, [("line left out", ast.Pass())]), 1)
+            line = ast.If(left_out, [ast.Pass()], [line])
+            early = self._asked(self._place(statement, [("line too early", statement)]), 1)
+            new[-1] = ast.If(early, [line, new[-1]], [new[-1], line])
         return new
 
     def _switched(self, node: Any, parent: ast.AST | None = None) -> Any:
@@ -241,19 +250,15 @@ class Switches:
             if isinstance(node.op, ast.Pow):
                 given = getattr(node.right, "value", None)
                 others += tuple(("power", f"np.asarray(a) ** {n}") for n in _POWERS if n != given)
-            new = self._applied_to("a, b", [new.left, new.right], node, as_it_is, others)
-            for form, (kind, _) in enumerate(others, 1):
-                self._note(kind, len(self.places) - 1, form, shape, str(form))
+            place = self._place(node, others, None, shape)
+            new = self._applied(place, "a, b", as_it_is, [new.left, new.right])
         forms = [*_forms(node, parent, self._names), *(_more_forms(node) if self._own else ())]
-        place = self._place(node, [other for _, other in forms], parent)
-        for form, (kind, other) in enumerate(forms, 1):
-            self._note(kind, place, form, shape, _shape(other))
-            new = _placed(ast.IfExp(self._asked(place, form), other, new))
+        place = self._place(node, forms, parent, shape)
+        for form, (_, other) in enumerate(forms, 1):
+            new = ast.IfExp(self._asked(place, form), other, new)
         if self._own and self._has_numbers(node):
-            new = self._applied_to("x", [new], node, "x", _TURNED, parent)
-            for form, (kind, _) in enumerate(_TURNED, 1):
-                setting = ((len(self.places) - 1, form),)
-                self._turned.append(Slip(kind, (self._line,), setting))
+            place = self._place(node, _TURNED, parent, slips=self._turned)
+            new = self._applied(place, "x", "x", [new])
         return new
 
     def _has_numbers(self, node: ast.expr) -> bool:
@@ -262,44 +267,12 @@ class Switches:
             return node.id in self._names
         return not isinstance(node, ast.Constant) and getattr(node, "attr", "T") in ("T", "mT")
 
-    def _applied_to(
-        self,
-        names: str,
-        operands: list[ast.expr],
-        node: ast.expr,
-        as_it_is: str,
-        others: Sequence[tuple[str, str]],
-        parent: ast.AST | None = None,
-    ) -> ast.expr:
+    def _applied(self, place: int, names: str, as_it_is: str, operands: list[ast.expr]) -> ast.expr:
         """Return an operation on what its operands give, which may be another one."""
-        texts = [text for _, text in others]
-        place = self._place(node, texts, parent)
-        self._applied[place] = [_function(names, text) for text in (as_it_is, *texts)]
+        texts = [as_it_is, *map(str, self._nodes[place][2])]
+        self._operations[place] = [_function(names, text) for text in texts]
         called = ast.Name("_apply_", ast.Load())
-        return _placed(ast.Call(called, [ast.Constant(place), *operands], []))
-
-    def _note(self, kind: str, place: int, form: int, before: str = "", after: str = "") -> None:
-        self._found.append(Slip(kind, (self._line,), ((place, form),)))
-        if before and after:
-            alike = self._alike.setdefault((kind, before, after), [])
-            alike.append((self._line, place, form))
-
-
-def _placed(node: _Node) -> _Node:
-    """Give new nodes a line, as the compiler asks; old ones have theirs."""
-    if "lineno" in node._attributes:
-        if hasattr(node, "lineno"):
-            return node
-        place = {"lineno": 1, "end_lineno": 1, "col_offset": 0, "end_col_offset": 0}
-        for name, value in place.items():
-            setattr(node, name, value)
-    for child in ast.iter_child_nodes(node):
-        _placed(child)
-    return node
-
-
-def _is_set(node: ast.Name) -> bool:
-    return isinstance(node.ctx, ast.Store)
+        return ast.Call(called, [ast.Constant(place), *operands], [])
 
 
 def _names(function: ast.FunctionDef) -> list[str]:

@@ -10,7 +10,7 @@ from cvnotes.base import Array
 from cvnotes.tutor.checker.equality import AS_NEAR, TOLERANCE
 from cvnotes.tutor.checker.exercise import Exercise
 from cvnotes.tutor.checker.families import family_of
-from cvnotes.tutor.checker.foreseen import explains, what_it_gives
+from cvnotes.tutor.checker.foreseen import explains, if_it_gives
 from cvnotes.tutor.checker.inputs import slips_of, with_inputs
 from cvnotes.tutor.checker.wrong_answer import Found, WrongAnswer
 
@@ -75,13 +75,6 @@ def _says_enough(answer: WrongAnswer) -> bool:
     return len(np.unique(numbers[numbers != np.rint(numbers)])) >= _ENOUGH
 
 
-def _given(gives: Callable[..., Any], args: tuple[Any, ...]) -> Array | None:
-    try:
-        return what_it_gives(gives, args)
-    except Exception:  # whatever two mistakes lead to
-        return None
-
-
 def _pairs(
     exercise: Exercise, args: tuple[Any, ...]
 ) -> Iterator[tuple[_Way | None, _Way, Callable[..., Any], Array | None]]:
@@ -103,17 +96,17 @@ def _pairs(
     alone = [slip._replace(gives=with_inputs(slip.gives, exercise.reference)) for slip in slips]
     for first in (None, *listed, *alone):
         does = exercise.reference if first is None else first.gives
-        given = _given(does, args)
+        given = if_it_gives(does, args)
         for change in _BESIDES if given is not None else ():
-            yield first, change, _changed(change.gives, does), _given(change.gives, (given,))
+            yield first, change, _changed(change.gives, does), if_it_gives(change.gives, (given,))
     if exercise.steps is not None and family_of(exercise.steps).loops:  # they take too long
         return
     for other, slip in product(listed, slips):
         gives = with_inputs(slip.gives, other.gives)
-        yield slip, other, gives, _given(gives, args)
+        yield slip, other, gives, if_it_gives(gives, args)
     for one, second in combinations(slips, 2):
         gives = with_inputs(second.gives, with_inputs(one.gives, exercise.reference))
-        yield one, second, gives, _given(gives, args)
+        yield one, second, gives, if_it_gives(gives, args)
 
 
 def _changed(change: Callable[..., Any], gives: Callable[..., Any]) -> Callable[..., Any]:

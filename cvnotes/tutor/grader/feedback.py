@@ -3,6 +3,7 @@
 import re
 from collections.abc import Sequence
 from html import escape
+from importlib.resources import files
 
 from cvnotes.tutor.checker.exercise import Exercise
 from cvnotes.tutor.checker.report import marked
@@ -13,33 +14,14 @@ from cvnotes.tutor.grader.tables import counted, misconceptions, number
 from cvnotes.tutor.grader.totals import Total
 
 # Okabe's and Ito's blue and vermilion stay apart for every eye; each has a sign of its own, too.
-_RIGHT, _WRONG, _OPEN, _NONE = "#0072B2", "#D55E00", "#8C8C8C", "#E3E3E3"
+_STATES = (
+    ("right", "#0072B2", "✓ right"),
+    ("wrong", "#D55E00", "✗ not yet right"),
+    ("open", "#8C8C8C", "– not solved yet"),
+    ("open", "#E3E3E3", "– not handed in"),
+)
 # By these words the command knows its own files, which it may replace.
 MADE_BY = "made by cvnotes grade"
-_STYLE = """
-:root { color-scheme: light dark; --line: #8884; }
-body { font: 1rem/1.5 system-ui, sans-serif; margin: 0 auto; padding: 1rem; max-width: 44rem; }
-h1 { font-size: 1.35rem; margin: 0 0 .25rem; overflow-wrap: anywhere; }
-h2 { font-size: 1.1rem; margin: 0; }
-section { border-top: 1px solid var(--line); padding: 1rem 0; }
-p { margin: .5rem 0; }
-ul { list-style: none; margin: .5rem 0; padding: 0; }
-li { padding-left: 1.4em; text-indent: -1.4em; overflow-wrap: anywhere; }
-pre { white-space: pre-wrap; overflow-wrap: anywhere; padding: .6rem .75rem;
-      border: 1px solid var(--line);
-      border-radius: .4rem; font-size: .8rem; line-height: 1.4; }
-code { overflow-wrap: anywhere; }
-.sum { font-size: 1.35rem; margin: .25rem 0 1rem; }
-.head { display: flex; justify-content: space-between; gap: 1rem; align-items: baseline; }
-.points { white-space: nowrap; font-variant-numeric: tabular-nums; }
-.right, .wrong, .open { font-weight: 600; }
-.next { border-left: .25rem solid #0072B2; padding-left: .75rem; }
-.quiet { opacity: .75; font-size: .9rem; }
-table { border-collapse: collapse; width: 100%; }
-td, th { text-align: left; padding: .25rem .5rem .25rem 0; border-bottom: 1px solid var(--line); }
-td:not(:first-child) { text-align: right; white-space: nowrap; }
-svg { width: 100%; height: auto; }
-"""
 
 
 def file_name(total: Total, taken: Sequence[str]) -> str:
@@ -92,12 +74,12 @@ def student_page(total: Total, course: Course, title: str) -> str:
 
 def _section(course: Course, name: str, item: Item, total: Total) -> str:
     verdict = total.verdicts.get(name)
-    exercise = course.exercises[name]
+    exercise, (kind, _, words) = course.exercises[name], _STATES[_state(verdict)]
     earned = f"{number(total.earned(name))} of {number(item.points)}"
     lines = [
         f'<div class="head"><h2>{escape(exercise.title)}</h2><span class="points">{earned}</span>',
         f'</div><p class="quiet"><code>{name}</code>, {_place(exercise, course)}</p>',
-        f"<p>{_badge(verdict)}</p>",
+        f'<p><span class="{kind}">{words[:2]}{words[2:].capitalize()}</span></p>',
     ]
     if verdict is not None:
         lines += _found(verdict)
@@ -110,14 +92,11 @@ def _place(exercise: Exercise, course: Course) -> str:
     return f"chapter {exercise.chapter}" + ("" if notebook.isdigit() else f", {notebook}")
 
 
-def _badge(verdict: Verdict | None) -> str:
+def _state(verdict: Verdict | None) -> int:
+    """Return which of the states an answer is in."""
     if verdict is None:
-        return '<span class="open">– Not handed in</span>'
-    if verdict.passed:
-        return '<span class="right">✓ Right</span>'
-    if verdict.is_open:
-        return '<span class="open">– Not solved yet</span>'
-    return '<span class="wrong">✗ Not yet right</span>'
+        return 3
+    return 0 if verdict.passed else 2 if verdict.is_open else 1
 
 
 def _found(verdict: Verdict) -> list[str]:
@@ -205,20 +184,23 @@ def class_picture(sums: Sequence[Total], course: Course) -> str:
     left = 20 + 7 * max(map(len, names), default=0)
     width, row, top = 332 - left, 22, 60
     height = top + row * len(names) + 8
-    shapes = [_legend()]
+    shapes = []
+    for i, (_, colour, text) in enumerate(_STATES):
+        x, y = 8 + 160 * (i % 2), 6 + 22 * (i // 2)
+        shapes.append(f'<rect x="{x}" y="{y}" width="14" height="14" fill="{colour}"/>')
+        shapes.append(f'<text x="{x + 20}" y="{y + 12}">{text}</text>')
     for i, name in enumerate(names):
-        counts = _counts(name, sums)
-        y, x, n = top + row * i, float(left), sum(counts)
+        states = [_state(total.verdicts.get(name)) for total in sums if name in total.items]
+        y, start, n = top + row * i, float(left), len(states)
         shapes.append(f'<text x="{left - 8}" y="{y + 13}" text-anchor="end">{name}</text>')
-        for count, (colour, _) in zip(counts, _PARTS, strict=True):
-            part = width * count / n
-            if count:
+        for state, (_, colour, _) in enumerate(_STATES):
+            if part := width * states.count(state) / n:
                 shapes.append(
-                    f'<rect x="{x:.1f}" y="{y}" width="{part:.1f}" height="{row - 5}" '
+                    f'<rect x="{start:.1f}" y="{y}" width="{part:.1f}" height="{row - 5}" '
                     f'fill="{colour}"/>'
                 )
-            x += part
-        label = f"{counts[0]} of {n}"
+            start += part
+        label = f"{states.count(0)} of {n}"
         shapes.append(f'<text x="{left + width + 8}" y="{y + 13}">{label}</text>')
     return (
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 400 {height}" role="img" '
@@ -228,37 +210,12 @@ def class_picture(sums: Sequence[Total], course: Course) -> str:
     )
 
 
-_PARTS = (
-    (_RIGHT, "✓ right"),
-    (_WRONG, "✗ not yet right"),
-    (_OPEN, "– not solved yet"),
-    (_NONE, "not handed in"),
-)
-
-
-def _legend() -> str:
-    shapes = []
-    for i, (colour, text) in enumerate(_PARTS):
-        x, y = 8 + 160 * (i % 2), 6 + 22 * (i // 2)
-        shapes.append(f'<rect x="{x}" y="{y}" width="14" height="14" fill="{colour}"/>')
-        shapes.append(f'<text x="{x + 20}" y="{y + 12}">{text}</text>')
-    return "".join(shapes)
-
-
-def _counts(name: str, sums: Sequence[Total]) -> tuple[int, int, int, int]:
-    """Count right, wrong, open and missing answers to an exercise."""
-    given = [total.verdicts.get(name) for total in sums if name in total.items]
-    right = sum(v is not None and v.passed for v in given)
-    open_ = sum(v is not None and v.is_open for v in given)
-    none = sum(v is None for v in given)
-    return right, len(given) - right - open_ - none, open_, none
-
-
 def _page(title: str, parts: Sequence[str]) -> str:
+    style = files("cvnotes.tutor.grader").joinpath("feedback.css").read_text("utf-8")
     return (
         f'<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8"><!-- {MADE_BY} -->'
         '<meta name="viewport" content="width=device-width, initial-scale=1">'
-        f"<title>{escape(title)}</title><style>{_STYLE}</style></head>\n<body>\n"
+        f"<title>{escape(title)}</title><style>\n{style}</style></head>\n<body>\n"
         + "\n".join(parts)
         + "\n</body></html>\n"
     )

@@ -7,7 +7,7 @@ they hand back is numbers only. That keeps mistakes to the row of whoever made t
 import os
 import queue
 import secrets
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping
 from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
@@ -19,7 +19,7 @@ from cvnotes.tutor.grader.belonging import expected_exercises
 from cvnotes.tutor.grader.handed_in import Handin, listed
 from cvnotes.tutor.grader.handin import code_cells
 from cvnotes.tutor.grader.judging import judged
-from cvnotes.tutor.grader.marks import Mark, Verdict
+from cvnotes.tutor.grader.marks import Mark
 from cvnotes.tutor.grader.process import Limits, Ran, clear_abandoned, run_notebook, stop
 from cvnotes.tutor.grader.source import fingerprint, own_code
 
@@ -69,55 +69,40 @@ def grade_folder(
     """
     if course_named(course.home) is not course:
         raise CvnotesError(f"{course.home} is another course than the one to grade by")
-    handed_in = listed(folder, ours)
+    handed_in, limits = listed(folder, ours), Limits(seconds, megabytes)
     clear_abandoned()
-    return handed_in, _marks(
-        handed_in, course, Limits(seconds, megabytes), jobs, executor, known or {}, (folder,)
-    )
 
+    def marks() -> Iterator[Mark]:
+        batch = secrets.token_hex(8)
+        waiting: dict[Future[Mark], Handin] = {}
+        done: queue.SimpleQueue[Future[Mark]] = queue.SimpleQueue()
+        pool = executor or ThreadPoolExecutor(jobs or os.cpu_count())
+        try:
+            for one in handed_in:
+                mark = (known or {}).get((one.student, one.notebook, one.hash))
+                if mark is not None:
+                    yield mark
+                    continue
+                try:
+                    waiting[pool.submit(grade, one, course, limits, (folder,), batch)] = one
+                except Exception as error:  # a pool whose worker died takes nothing more
+                    yield _lost(one, course, error)
+            for future in waiting:
+                future.add_done_callback(done.put)
+            for _ in range(len(waiting)):
+                future = done.get()
+                try:
+                    yield future.result()
+                except Exception as error:  # what a worker dies of stays in the row
+                    yield _lost(waiting[future], course, error)
+        finally:
+            stop(batch)
+            for future in waiting:
+                future.cancel()
+            if executor is None:
+                pool.shutdown(cancel_futures=True)
 
-def _marks(
-    handed_in: Sequence[Handin],
-    course: Course,
-    limits: Limits,
-    jobs: int | None,
-    executor: Executor | None,
-    known: Mapping[tuple[str, str, str], Mark],
-    hidden: tuple[Path, ...],
-) -> Iterator[Mark]:
-    batch = secrets.token_hex(8)
-    waiting: dict[Future[Mark], Handin] = {}
-    done: queue.SimpleQueue[Future[Mark]] = queue.SimpleQueue()
-    pool = executor or ThreadPoolExecutor(jobs or os.cpu_count())
-    try:
-        for one in handed_in:
-            mark = known.get((one.student, one.notebook, one.hash))
-            if mark is not None:
-                yield mark
-                continue
-            try:
-                waiting[pool.submit(grade, one, course, limits, hidden, batch)] = one
-            except Exception as error:  # a pool whose worker died takes nothing more
-                yield _lost(one, course, error)
-        for future in waiting:
-            future.add_done_callback(done.put)
-        for _ in range(len(waiting)):
-            future = done.get()
-            yield _result(future, waiting[future], course)
-    finally:
-        stop(batch)
-        for future in waiting:
-            future.cancel()
-        if executor is None:
-            pool.shutdown(cancel_futures=True)
-
-
-def _result(future: "Future[Mark]", one: Handin, course: Course) -> Mark:
-    """Return a mark; what a worker dies of stays in the row."""
-    try:
-        return future.result()
-    except Exception as error:
-        return _lost(one, course, error)
+    return handed_in, marks()
 
 
 def _lost(one: Handin, course: Course, error: Exception) -> Mark:
@@ -127,11 +112,7 @@ def _lost(one: Handin, course: Course, error: Exception) -> Mark:
 
 
 def grade(
-    one: Handin,
-    course: Course,
-    limits: Limits,
-    hidden: tuple[Path, ...] = (),
-    batch: str = "",
+    one: Handin, course: Course, limits: Limits, hidden: tuple[Path, ...] = (), batch: str = ""
 ) -> Mark:
     """Grade one notebook, perhaps on another machine; whatever goes wrong is a remark."""
     try:
@@ -154,41 +135,30 @@ def _graded(
     seed = int(one.hash[:12], 16)
     ran = run_notebook(cells, seed, course, limits, hidden, batch)
     verdicts, ids = judged(ran.answers, seed, course)
-    verdicts = _looked_at(verdicts, cells, course)
-    return Mark(
-        one.student,
-        one.notebook,
-        verdicts,
-        expected_exercises(one.notebook, list(verdicts), course),
-        ids,
-        "; ".join(_remarks(ran, cells)),
-        one.hash,
-        ran.sealed,
+    written = own_code(cells)
+    verdicts = {
+        name: replace(verdict, code=fingerprint(name, written, course.notebooks))
+        for name, verdict in verdicts.items()
+    }
+    return replace(
+        nothing,
+        reports=verdicts,
+        expected=expected_exercises(one.notebook, list(verdicts), course),
+        ids=ids,
+        remark="; ".join(_remarks(ran, "check" in written.definitions)),
+        content=one.hash,
+        sealed=ran.sealed,
     )
 
 
-def _looked_at(
-    verdicts: dict[str, Verdict], cells: list[str], course: Course
-) -> dict[str, Verdict]:
-    """Add what the notebook's text says about its functions."""
-    written = own_code(cells)
-    return {
-        name: replace(
-            verdict,
-            code=fingerprint(name, written, course.notebooks),
-        )
-        for name, verdict in verdicts.items()
-    }
-
-
-def _remarks(ran: Ran, cells: list[str]) -> Iterator[str]:
+def _remarks(ran: Ran, own_check: bool) -> Iterator[str]:
     """Yield what a teacher is to know of a notebook as a whole."""
     failed = ran.finished.get("failed")
     if ran.ended or not ran.finished:
         yield ran.ended or "ended before its last cell"
     elif failed:
         yield f"{failed} cells failed, first: {clean(ran.finished.get('first'), 120)}"
-    if "check" in own_code(cells).definitions:
+    if own_check:
         yield "has a check of its own"
     elif not ran.answers and ran.finished:
         yield "hands nothing to check"

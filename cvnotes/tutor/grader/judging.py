@@ -74,7 +74,7 @@ def _verdict(exercise: Exercise, line: Mapping[str, Any], seed: int) -> Verdict:
         return verdict_of(report)
     outcomes[seed] = _outcomes(exercise, line["again"], seed)
     report = verdict(exercise, outcomes)
-    return verdict_of(report, note=_borrowed(line) if report.passed else RIGHT_THERE_NOT_HERE)
+    return verdict_of(report, _borrowed(line) if report.passed else RIGHT_THERE_NOT_HERE)
 
 
 def _borrowed(line: Mapping[str, Any]) -> str:

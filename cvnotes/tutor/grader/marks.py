@@ -4,7 +4,7 @@ They travel between processes and machines, and are lines of a file for ``--resu
 """
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field
 from typing import Any
 
 from cvnotes.tutor.checker.report import OPEN, RIGHT, Report
@@ -48,7 +48,7 @@ class Verdict:
         return self.verdict == OPEN
 
 
-def verdict_of(report: Report, *, code: str = "", note: str = "") -> Verdict:
+def verdict_of(report: Report, note: str = "") -> Verdict:
     """Put a report into plain data.
 
     Examples
@@ -56,19 +56,10 @@ def verdict_of(report: Report, *, code: str = "", note: str = "") -> Verdict:
     >>> verdict_of(Report("lift", "right", "Well done.")).passed
     True
     """
+    same = ("verdict", "message", "misconception", "holds", "fails", "remarks")
+    plain = {name: getattr(report, name) for name in same}
     lines = tuple(line for text in report.example() for line in text.splitlines())
-    return Verdict(
-        report.verdict,
-        report.message,
-        report.misconception,
-        report.holds,
-        report.fails,
-        report.remarks,
-        tuple(report.compared()),
-        lines,
-        code,
-        note,
-    )
+    return Verdict(**plain, compared=tuple(report.compared()), example=lines, note=note)
 
 
 @dataclass(frozen=True)
@@ -122,33 +113,26 @@ class Mark:
         return "/".join(part for part in (self.student, self.notebook) if part)
 
 
-def as_fields(mark: Mark) -> dict[str, Any]:
-    """Return a mark as what JSON can hold.
-
-    Examples
-    --------
-    >>> mark = Mark("ada", "06.ipynb", {"dlt": Verdict("right")}, ("dlt",))
-    >>> from_fields(as_fields(mark)) == mark
-    True
-    """
-    return asdict(mark)
-
-
 def from_fields(fields: Mapping[str, Any]) -> Mark:
-    """Make a mark of what `as_fields` gave.
+    """Make a mark of the fields that ``dataclasses.asdict`` gives of one.
 
     Raises
     ------
     KeyError, TypeError, AttributeError
         Something is missing, or is not what it should be.
+
+    Examples
+    --------
+    >>> from dataclasses import asdict
+    >>> mark = Mark("ada", "06.ipynb", {"dlt": Verdict("right")}, ("dlt",))
+    >>> from_fields(asdict(mark)) == mark
+    True
     """
-    reports = {name: _verdict(given) for name, given in fields["reports"].items()}
-    lists = {name: tuple(map(str, fields[name])) for name in ("expected", "ids")}
-    return Mark(**{**fields, **lists, "reports": reports})
+    lists = ("holds", "remarks", "compared", "example")
+    given = fields["reports"].items()
+    reports = {name: Verdict(**_with_tuples(verdict, *lists)) for name, verdict in given}
+    return Mark(**_with_tuples(fields, "expected", "ids") | {"reports": reports})
 
 
-def _verdict(given: Mapping[str, Any]) -> Verdict:
-    lists = {
-        name: tuple(map(str, given[name])) for name in ("holds", "remarks", "compared", "example")
-    }
-    return Verdict(**{**given, **lists})
+def _with_tuples(fields: Mapping[str, Any], *names: str) -> dict[str, Any]:
+    return {**fields, **{name: tuple(map(str, fields[name])) for name in names}}

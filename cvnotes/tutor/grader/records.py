@@ -8,16 +8,16 @@ import contextlib
 import json
 import os
 from collections.abc import Mapping
+from dataclasses import asdict
 from hashlib import sha256
 from pathlib import Path
-from types import TracebackType
 from typing import IO, Self
 
 from cvnotes import __version__
 from cvnotes.base import FileError
 from cvnotes.base.writing import printable, write_whole
 from cvnotes.tutor.course import Course
-from cvnotes.tutor.grader.marks import Mark, as_fields, from_fields
+from cvnotes.tutor.grader.marks import Mark, from_fields
 from cvnotes.tutor.grader.process import Limits
 
 Known = dict[tuple[str, str, str], Mark]
@@ -45,11 +45,7 @@ class Records:
     """
 
     def __init__(
-        self,
-        path: Path,
-        known: Mapping[tuple[str, str, str], Mark],
-        limits: Limits,
-        course: Course,
+        self, path: Path, known: Mapping[tuple[str, str, str], Mark], limits: Limits, course: Course
     ) -> None:
         self.path, self._limits, self._version = path, limits, _version(course)
         self._marks = dict(known)
@@ -59,12 +55,7 @@ class Records:
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
         self._stream.close()
         if kind is None:  # whatever a notebook wrote into it does not stay
             self._write()
@@ -85,7 +76,7 @@ class Records:
 
     def _line(self, mark: Mark) -> bytes:
         graded = {"version": self._version, "limits": _limited(self._limits)}
-        fields = {**graded, "mark": as_fields(mark)}
+        fields = {**graded, "mark": asdict(mark)}
         return json.dumps(fields, ensure_ascii=True, allow_nan=False).encode() + b"\n"
 
     def _write(self) -> None:

@@ -1,12 +1,10 @@
 """Marks as tables: for a spreadsheet, for Moodle, for Canvas."""
 
-import csv
-import io
 import re
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 
-from cvnotes.base.writing import harmless
+from cvnotes.base.writing import as_csv
 from cvnotes.tutor.course import Course
 from cvnotes.tutor.grader.assignment import Assignment
 from cvnotes.tutor.grader.marks import Mark
@@ -26,33 +24,28 @@ def marks_csv(marks: Sequence[Mark], course: Course, assignment: Assignment | No
     >>> print(marks_csv([Mark("ada", "=1+1.ipynb", expected=("dlt",))], COURSE).splitlines()[1])
     ada,'=1+1.ipynb,0,1,0,0,,,
     """
+    rows: Iterable[tuple[Total | Mark, str, str, float, float, list[str], Iterable[str]]]
     if assignment:
-        return _of_students(totals(marks, course, assignment), assignment)
-    asked = {name for mark in marks for name in mark.expected}
-    names = [name for name in course.exercises if name in asked]
-    rows = []
-    for mark, remarks in zip(marks, remarked(marks), strict=True):
-        points = [str(mark.earned(name)) if name in mark.expected else "" for name in names]
-        rows.append(
-            [mark.student, mark.notebook, str(mark.points), str(len(mark.expected))]
-            + [_percent(mark.points, len(mark.expected)), *points]
-            + [_met(mark.misconceptions), ", ".join(mark.ids), "; ".join(remarks)]
-        )
-    return _csv([[*HEADER, *names, *_TRAILER], *rows])
-
-
-def _of_students(sums: Sequence[Total], assignment: Assignment) -> str:
-    names = list(assignment.items)
-    rows = []
-    for total in sums:
-        met = {n: v.misconception for n, v in total.verdicts.items() if v.misconception}
-        rows.append(
-            [total.student.student, ", ".join(m.notebook for m in total.marks if m.notebook)]
-            + [number(total.points), number(total.of), _percent(total.points, total.of)]
-            + [number(total.earned(name)) for name in names]
-            + [_met(met), ", ".join(total.ids), "; ".join(total.remarks)]
-        )
-    return _csv([[*HEADER, *names, *_TRAILER], *rows])
+        names = list(assignment.items)
+        rows = (
+            (total, total.student.student, ", ".join(m.notebook for m in total.marks if m.notebook),
+             total.points, total.of, [number(total.earned(name)) for name in names], total.remarks)
+            for total in totals(marks, course, assignment)
+        )  # fmt: skip
+    else:
+        names = [name for name in course.exercises if any(name in m.expected for m in marks)]
+        rows = (
+            (mark, mark.student, mark.notebook, mark.points, len(mark.expected),
+             [str(mark.earned(name)) if name in mark.expected else "" for name in names], remarks)
+            for mark, remarks in zip(marks, remarked(marks), strict=True)
+        )  # fmt: skip
+    table = [
+        [who, notebook, number(points), number(of), str(round(100 * points / of)) if of else "0"]
+        + [*earned, "; ".join(f"{name}: {what}" for name, what in one.misconceptions.items())]
+        + [", ".join(one.ids), "; ".join(remarks)]
+        for one, who, notebook, points, of, earned, remarks in rows
+    ]
+    return as_csv([[*HEADER, *names, *_TRAILER], *table])
 
 
 def for_moodle(sums: Sequence[Total], title: str) -> str:
@@ -70,12 +63,13 @@ def for_moodle(sums: Sequence[Total], title: str) -> str:
     header = ["Identifier", "Full name", "Email address", "ID number"]
     rows = []
     for total in sums:
-        found = re.search(r"_(\d+)_assignsubmission", _folder(total))
+        folder = total.marks[0].student if total.marks else ""
+        found = re.search(r"_(\d+)_assignsubmission", folder)
         rows.append(
             [f"Participant {found[1]}" if found else "", _name(total), total.student.email]
             + [total.student.id, number(total.points), number(total.of), _comment(total)]
         )
-    return _csv([[*header, "Grade", "Maximum Grade", f"Feedback comments: {title}"], *rows])
+    return as_csv([[*header, "Grade", "Maximum Grade", f"Feedback comments: {title}"], *rows])
 
 
 def for_canvas(sums: Sequence[Total], title: str) -> str:
@@ -101,7 +95,7 @@ def for_canvas(sums: Sequence[Total], title: str) -> str:
             [_name(total), found[1] if found else "", one.id, one.email, one.section]
             + [number(total.points)]
         )
-    return _csv([["Student", "ID", "SIS User ID", "SIS Login ID", "Section", title], *rows])
+    return as_csv([["Student", "ID", "SIS User ID", "SIS Login ID", "Section", title], *rows])
 
 
 def summary(marks: Sequence[Mark], course: Course, assignment: Assignment | None = None) -> str:
@@ -114,24 +108,21 @@ def summary(marks: Sequence[Mark], course: Course, assignment: Assignment | None
     1 notebook, 0 of 1 points
     dlt                           0 of 1
     """
-    sums = totals(marks, course, assignment)
-    points, possible = sum(t.points for t in sums), sum(t.of for t in sums)
     if assignment:
-        lines = [f"{counted(len(sums), 'student')}, {number(points)} of {number(possible)} points"]
-        lines += [
-            f"{name:<29} {sum(name in t.verdicts and t.verdicts[name].passed for t in sums)}"
-            f" of {len(sums)}"
+        sums = totals(marks, course, assignment)
+        who, points = counted(len(sums), "student"), sum(t.points for t in sums)
+        possible = assignment.points * len(sums)
+        solved = {
+            name: (sum(name in t.verdicts and t.verdicts[name].passed for t in sums), len(sums))
             for name in assignment.items
-        ]
+        }
     else:
+        who = counted(sum(bool(mark.notebook) for mark in marks), "notebook")
         points, possible = sum(m.points for m in marks), sum(len(m.expected) for m in marks)
-        n = sum(bool(mark.notebook) for mark in marks)
-        lines = [f"{counted(n, 'notebook')}, {points} of {possible} points"]
-        for name in course.exercises:
-            expected = [mark for mark in marks if name in mark.expected]
-            if expected:
-                solved = sum(mark.earned(name) for mark in expected)
-                lines.append(f"{name:<29} {solved} of {len(expected)}")
+        asked = {name: [m for m in marks if name in m.expected] for name in course.exercises}
+        solved = {n: (sum(m.earned(n) for m in own), len(own)) for n, own in asked.items() if own}
+    lines = [f"{who}, {number(points)} of {number(possible)} points"]
+    lines += [f"{name:<29} {n} of {of}" for name, (n, of) in solved.items()]
     met = misconceptions(marks)
     lines += ["misconceptions met:"] * bool(met)
     lines += [f"{count:>4} × {name}: {what}" for (name, what), count in met.most_common()]
@@ -165,18 +156,6 @@ def number(x: float) -> str:
     return f"{round(x, 2):g}"
 
 
-def _percent(points: float, of: float) -> str:
-    return str(round(100 * points / of)) if of else "0"
-
-
-def _met(met: Mapping[str, str]) -> str:
-    return "; ".join(f"{name}: {mistake}" for name, mistake in met.items())
-
-
-def _folder(total: Total) -> str:
-    return total.marks[0].student if total.marks else ""
-
-
 def _name(total: Total) -> str:
     return total.student.name or total.student.student.split("_")[0]
 
@@ -189,10 +168,3 @@ def _comment(total: Total) -> str:
         mistake = f". {verdict.message}" if verdict and verdict.misconception else ""
         said.append(f"{name}: {number(total.earned(name))} of {number(item.points)}{mistake}")
     return "; ".join(said)
-
-
-def _csv(rows: Iterable[Sequence[str]]) -> str:
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerows([harmless(cell) for cell in row] for row in rows)
-    return text.getvalue()

@@ -45,6 +45,11 @@ class Total:
         return sum(item.points for item in self.items.values())
 
     @property
+    def misconceptions(self) -> dict[str, str]:
+        """The misconceptions met, by exercise."""
+        return {n: v.misconception for n, v in self.verdicts.items() if v.misconception}
+
+    @property
     def ids(self) -> tuple[str, ...]:
         """The ids that were used for personal cameras."""
         return tuple(dict.fromkeys(one for mark in self.marks for one in mark.ids))
