@@ -9,6 +9,7 @@ import re
 import subprocess
 import sys
 import time
+import warnings
 from dataclasses import replace
 
 import numpy as np
@@ -94,7 +95,6 @@ from cvnotes.show.explorations import (
 from cvnotes.show.explorations import depth as swept
 from cvnotes.show.explorations.boards import on_sheet as from_afar
 from cvnotes.show.explorations.boards import pinhole
-from cvnotes.show.explorations.columns import Believed
 from cvnotes.show.explorations.depth import pair
 from cvnotes.show.explorations.disparity import columns, triangulated
 from cvnotes.show.explorations.epipolar import cameras, seen_by_the_second
@@ -124,6 +124,7 @@ from cvnotes.show.explorations.rectification import turned
 from cvnotes.show.explorations.rod import at_height
 from cvnotes.show.explorations.ruler import behind_the_first
 from cvnotes.show.explorations.seam import scene as scene_of_the_seam
+from cvnotes.show.explorations.sheets import Believed
 from cvnotes.show.explorations.strokes import cut
 from cvnotes.show.explorations.subpixel import neighbourhood
 from cvnotes.show.explorations.swing import nets, weights
@@ -731,56 +732,51 @@ def believed():
 
 def test_the_misses_of_the_real_board_are_those_of_whole_calibrations(believed):
     real = course.real_corners()
-    W, none = real.board.points, np.zeros(9)
+    W = real.board.points
     sides = zip(believed, (real.left, real.right), believed[::-1], strict=True)
     for one, m, other in sides:
-        moved = W + np.outer(np.tile(other.columns, 6), [1, 0, 0])
-        for points, said in ((W, one.misses(none)), (moved, one.misses(other.columns))):
-            with pytest.warns(CalibrationWarning, match="neighbouring corners miss"):
-                found = calibrate(points, m, real.size, lens="k1 k2 p1 p2")
-            assert abs(rms(said) / found.rms - 1) < 0.01
+        in_the_sheet = other.off * [1, 1, 0]
+        for off in (np.zeros((54, 3)), in_the_sheet):
+            with warnings.catch_warnings(action="ignore", category=CalibrationWarning):
+                found = calibrate(W + off, m, real.size, lens="k1 k2 p1 p2")
+            assert abs(rms(one.misses(off)) / found.rms - 1) < 0.01
         free = calibrate(W, m, real.size, lens="k1 k2 p1 p2", board="free")
-        assert abs(one.least / free.rms - 1) < 0.02
+        assert abs(rms(one.misses(one.off)) / free.rms - 1) < 0.02
+        assert np.allclose(one.off, free.board_points[0] - W, atol=0.03)
 
 
-def test_both_cameras_find_the_same_nine_columns_and_each_mends_the_other(believed):
+def test_both_cameras_find_the_same_sheet_and_each_one_serves_the_other(believed):
     left, right = believed
-    assert np.corrcoef(left.columns, right.columns)[0, 1] > 0.98
-    assert np.allclose(left.columns, right.columns, atol=0.03)
-    assert rms(left.misses(right.columns)) < 0.80 * rms(left.misses(0 * right.columns))
-    assert rms(right.misses(left.columns)) < 0.80 * rms(right.misses(0 * left.columns))
-    mirrored = rms(left.misses(right.columns[::-1]))
-    assert mirrored > rms(left.misses(0 * right.columns))
+    for axis in range(3):
+        assert np.corrcoef(left.off[:, axis], right.off[:, axis])[0, 1] > 0.94
+    for one, other in (believed, believed[::-1]):
+        flat = rms(one.misses(0 * other.off))
+        assert rms(one.misses(other.off)) < 0.55 * flat
+        assert rms(one.misses(other.off[::-1])) > 1.2 * flat
+        best = min(range(41), key=lambda k: rms(one.misses(k / 20 * other.off)))
+        assert abs(best - 20) <= 1
 
 
-def test_the_pulled_columns_stand_where_the_other_camera_finds_them_and_the_bar_says_how_good():
-    """Each corner by itself, as in chapter 9: from the residuals and what half a mm would do."""
-    real = course.real_corners()
-    W = real.board.points
-    with pytest.warns(CalibrationWarning):
-        right = calibrate(W, real.right, real.size, lens="k1 k2 p1 p2")
-    d = np.subtract(*([c.project(W + [s, 0, 0]) for c in right.cameras] for s in (0.5, -0.5)))
-    said = (d * right.residuals).sum(axis=(0, 2)) / (d * d).sum(axis=(0, 2))
-    shifts = said.reshape(6, 9).mean(axis=0)
-    drawing = MODELS["columns"].drawing(amount=1)
-    between = drawing.picture[TITLE + 97, MARGIN : MARGIN + 560].astype(int)  # rows of corners
-    orange = np.abs(between - colour(ESTIMATED)).max(axis=-1) < 40
-    runs = np.split(np.arange(560), np.flatnonzero(np.diff(orange)) + 1)
-    at = np.array([run.mean() for run in runs if orange[run[0]]])
-    mm = (at + 0.5) * (8 + 1.25 + 0.75) * 30 / 560 - 37.5
-    drawn = (mm - 30 * np.arange(9)) / 100
-    assert np.abs(drawn - shifts).max() < 0.008
-    assert np.ptp(shifts) > 0.2
-    bar = drawing.picture[TITLE:, MARGIN + 560 + 6 :].astype(int)
+@pytest.mark.parametrize("amount", [0, 0.5, 1, 2])
+def test_the_orange_sheet_is_the_blue_one_once_and_the_bar_is_the_left_cameras(believed, amount):
+    left, right = believed
+    drawing = MODELS["sheets"].drawing(amount=amount)
+    after = rms(left.misses(amount * right.off))
+    said = [
+        rms(left.misses(0 * left.off)),
+        *([after] if amount else []),
+        rms(left.misses(left.off)),
+    ]
+    assert np.allclose(
+        [float(x) for x in re.findall(r"by (0\.\d+)", drawing.sentence)], said, atol=6e-4
+    )
+    bar = drawing.picture[TITLE:, -150 - MARGIN :].astype(int)
     filled = (np.abs(bar - colour(ESTIMATED)).max(axis=-1) < 40).sum(axis=0).max()
-    moved = W + np.outer(np.tile(shifts, 6), [1, 0, 0])
-    with pytest.warns(CalibrationWarning):
-        flat = calibrate(moved, real.left, real.size, lens="k1 k2 p1 p2")
-    assert filled / 420 * 1.2 * 0.18 == pytest.approx(flat.rms, abs=0.006)
-    with pytest.warns(CalibrationWarning):
-        drawn_flat = calibrate(W, real.left, real.size, lens="k1 k2 p1 p2")
-    gone = 1 - (flat.rms / drawn_flat.rms) ** 2
-    assert numbers(drawing.sentence)[-1] == pytest.approx(100 * gone, abs=2)
+    assert filled / 240 * 1.14 * 0.19 == pytest.approx(after, abs=0.003)
+    coloured = np.ptp(drawing.picture[TITLE + 3 : TITLE + 235].astype(int), axis=2) > 40
+    blue, orange = (coloured[:, at + 3 : at + 330] for at in (MARGIN, MARGIN + 346))
+    alike = (blue & orange).sum() / (blue | orange).sum()
+    assert (alike > 0.7) == (amount == 1), alike
 
 
 def test_a_window_on_a_ramp_votes_along_it_and_one_on_a_corner_for_the_corner():
@@ -3860,7 +3856,7 @@ FREE_TO_MOVE = {
     "stands": {"alpha": 800},
     "straighten": {"k1": -0.1},
     "folds": {"k1": -0.15},
-    "columns": {"amount": 1},
+    "sheets": {"amount": 1},
     "ransac": {"draw": 20},
     "decentred": {"down": 0.08},
     "rings": {"place": 50},
@@ -3895,7 +3891,6 @@ ON_A_WAY = {  # along a curve, by its x
     ("ransac", "draw"),
     ("rings", "place"),
     ("clouds", "window"),
-    ("columns", "nine"),
     ("epipolar", "depth"),
     ("stands", "plane"),
     ("zoom", "sensor"),
@@ -3930,6 +3925,7 @@ ROUND = {
     *(("nails", f"nail {i}") for i in range(1, 5)),
 }
 ON_A_CURVE = {  # its nearest place
+    ("sheets", "corner"),
     ("seam", "middle"),
     ("bowl", "far"),
     ("twins", "other"),

@@ -355,6 +355,7 @@ def test_the_head_of_a_chapter_follows_one_corner_and_lights_the_steps_of_the_ch
         (5, 0, True),
         (7, 4, False),
         (10, 1, False),
+        (11, 0, True),
     ):
         picture = one_corner(chapter)
         drawn = ElementTree.fromstring(picture.data)
@@ -369,8 +370,10 @@ def test_the_head_of_a_chapter_follows_one_corner_and_lights_the_steps_of_the_ch
         assert "no lens (0.352, 0.224), pixel (607, 418)" in bare.alt
         assert bare.data.count(b"line-through") == 1
     assert one_corner(4).data.count(b"line-through") == 0
-    with pytest.raises(CvnotesError, match="0 to 10"):
-        one_corner(11)
+    boxes = [one_corner(chapter).data.count(b"h-144z") for chapter in (4, 5, 11)]
+    assert boxes == [0, 1, 1]
+    with pytest.raises(CvnotesError, match="0 to 11"):
+        one_corner(12)
 
 
 def test_each_step_of_the_head_can_be_checked_with_the_numbers_that_are_written():

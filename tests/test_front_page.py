@@ -16,6 +16,7 @@ from cvnotes.show.explorations.paper import Paper
 
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT / "tools"))
+CHAPTERS = sorted(ROOT.glob("notebooks/[0-9]*.ipynb"))
 front_page = pytest.importorskip("front_page", reason="the extra docs is not installed")
 
 
@@ -36,7 +37,8 @@ def test_it_says_what_readme_says_and_its_buttons_follow_what_there_is():
     for page in (alone, live, whole):
         assert front_page.sentence(readme) in page
         assert front_page.whom(readme) in page
-        assert page.count('<li><a href="notebooks/') == 12
+        assert page.count('<li><a href="notebooks/') == len(CHAPTERS)
+        assert page.count('<p class="front-beyond"><a href="notebooks/more_exercises.html">') == 1
         assert (
             len(re.findall(r'<nav class="front-buttons".*?</nav>', page, re.S)[0].split("<a ")) == 4
         )
@@ -50,12 +52,19 @@ def test_it_says_what_readme_says_and_its_buttons_follow_what_there_is():
     assert (ROOT / opened).is_file()  # JupyterLite has them in the repository's places
 
 
+def test_it_counts_its_questions_and_its_notebooks():
+    page = front_page.front_page(live=True, lite=True)
+    numbers = dict(enumerate(("Ten", "Eleven", "Twelve", "Thirteen", "Fourteen"), 10))
+    assert f"## {numbers[len(CHAPTERS)]} questions" in page
+    assert f"{numbers[len(CHAPTERS) + 1]} notebooks find all this" in page
+
+
 def test_the_hours_it_names_are_those_of_all_chapters():
     readme = (ROOT / "README.md").read_text(encoding="utf-8")
     first = (ROOT / "notebooks" / "00_start_here.ipynb").read_text(encoding="utf-8")
     rows = re.findall(r"\|(\d)([¼½¾]?)\|\\n", first)
     hours = sum(int(whole) + {"": 0, "¼": 0.25, "½": 0.5, "¾": 0.75}[part] for whole, part in rows)
-    assert len(rows) == 10
+    assert len(rows) == len(CHAPTERS) - 1
     assert f"some {round(hours)} hours" in front_page.whom(readme)
 
 
@@ -74,7 +83,7 @@ def test_the_box_names_the_mistake_that_is_in_it_and_without_python_the_page_doe
 def test_a_card_tells_how_long_its_chapter_takes():
     page = front_page.front_page(live=True, lite=True)
     assert "<small>build · 1¾ h</small> <strong>1 · Projective space</strong>" in page
-    assert page.count(" h</small>") == 10
+    assert page.count(" h</small>") == len(CHAPTERS) - 1
 
 
 @pytest.mark.slow

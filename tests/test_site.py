@@ -125,7 +125,9 @@ def test_without_python_the_site_is_whole_too(plain):
     assert not dead_links(plain, pages)
 
 
-def test_the_last_chapter_leads_to_the_pages_that_calibrate_and_show_a_board(live_folder, plain):
+def test_the_chapter_of_your_own_camera_leads_to_the_pages_that_calibrate_and_show_a_board(
+    live_folder, plain
+):
     """Where there are such pages; without them their names are words."""
     of_live, of_plain = (
         (folder / "notebooks/09_your_own_camera.html").read_text().split("<article")[1]

@@ -70,7 +70,8 @@ def test_each_chapter_has_a_lecture_of_90_minutes_whose_sections_and_exercises_t
     made = {name: slides_of(json.loads(text)) for name, text in sorted(notebooks.items())}
     teaching = (ROOT / "docs" / "teaching.md").read_text()
     lectures = plan(teaching, made)
-    assert list(lectures) == [*"123456789", "10"]
+    chapters = [str(int(name[:2])) for name in sorted(notebooks) if name[0].isdigit()]
+    assert list(lectures) == chapters[1:]
     for number, lecture in lectures.items():
         shown, _, exercises = lecture.partition("; exercises: ")
         ranges = re.findall(r"\((\d+)(?:–(\d+))?\)", shown.partition("; explore: ")[0])

@@ -14,7 +14,7 @@ FLOORS = (
     (("projective", "chapter 1"), ("tutor", "checks, marks")),
     (("camera", "chapters 2 to 4"), ("homography", "chapter 6")),
     (("targets", "chapter 5"), ("warping", "chapter 8"), ("files", "photographs, cameras")),
-    (("calibration", "chapters 7, 9"), ("pictures", "in all chapters")),
+    (("calibration", "chapters 7, 9, 11"), ("pictures", "in all chapters")),
     (("stereo", "chapter 10"),),
     (("photographs", "chapter 9"),),
     (("show", "figures, sliders"), ("learn", "exercises")),

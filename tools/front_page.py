@@ -32,7 +32,7 @@ PARTS = {
     "06_homography_dlt": ("homography", {"u": 0.0, "v": 0.0}, (20, 42, 346)),
     "07_zhang_calibration": ("nails", {}, (6, 44, 500)),
     "10_two_pictures": ("rectification", {}, (256, 26, 432)),
-    "more_exercises": ("conic", {"a": 0.0, "b": 1.5}, (414, 44, 390)),
+    "11_the_board_we_believed": ("sheets", {"amount": 1.0}, (366, 33, 308)),
 }
 _ROW = re.compile(r"^\| (\S+) \| \[(.+?)\]\(notebooks/(\w+)\.ipynb\) \| (.+?) \|$", re.M)
 _PART = re.compile(r"^\|(\w+)\|\[.+?\]\((\w+)\.ipynb\)\|.+\|(\S+)\|$", re.M)
@@ -75,6 +75,7 @@ def camera_centre(R: object, T: object) -> object:  # noqa: ARG001
 def front_page(live: bool, lite: bool) -> str:
     """Write the page: with an exploration that moves and what runs here, if there is Python."""
     readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    rows = _ROW.findall(readme)
     parts = {
         "SENTENCE": sentence(readme),
         "BUTTONS": buttons(live, lite),
@@ -82,7 +83,8 @@ def front_page(live: bool, lite: bool) -> str:
         "EXPLORATION": exploration(live),
         "QUESTION": QUESTION if live else "",
         "SOLUTION": SOLUTION if live else "",
-        "CARDS": "\n".join(card(*row) for row in _ROW.findall(readme)),
+        "CARDS": "\n".join(card(*row) for row in rows if row[0].isdigit()),
+        "BEYOND": "\n".join(line(*row) for row in rows if not row[0].isdigit()),
         "ANSWER": answer(live),
     }
     page = TEMPLATE.read_text(encoding="utf-8")
@@ -155,14 +157,19 @@ def answer(live: bool) -> str:
 
 def card(number: str, title: str, name: str, question: str) -> str:
     """Write a chapter's card: its richest picture, its name and its question."""
-    label = title if number == "★" else f"{int(number)} · {title}"
     question = re.sub(r"\*(.+?)\*", r"<em>\1</em>", escape(question))
     return (
         f'<li><a href="notebooks/{name}.html"><img src="{FOLDER}/card-{name}.jpg" alt="" '
         f'width="{CARD[0] // 2}" height="{CARD[1] // 2}" loading="lazy">'
-        f"<small>{parts().get(name, '')}</small> <strong>{escape(label)}</strong> "
+        f"<small>{parts().get(name, '')}</small> <strong>{int(number)} · {escape(title)}</strong> "
         f"<span>{question}</span></a></li>"
     )
+
+
+def line(_: str, title: str, name: str, question: str) -> str:
+    """Write what leads to a notebook that is no chapter."""
+    link = f'<a href="notebooks/{name}.html">{escape(title)}</a>'
+    return f'<p class="front-beyond">{link}: {escape(question)}</p>'
 
 
 @lru_cache(maxsize=1)
@@ -175,7 +182,7 @@ def parts() -> dict[str, str]:
 
 def put_pictures(made: Path) -> None:
     """Write the pictures of the page into the site."""
-    for path in sorted(ROOT.glob("notebooks/*.ipynb")):
+    for path in sorted(ROOT.glob("notebooks/[0-9]*.ipynb")):
         card_of(path).save(made / FOLDER / f"card-{path.stem}.jpg", quality=80, optimize=True)
     (made / FOLDER / "front.png").write_bytes(PICTURE.read_bytes())
     drawn(narrow=True).save(made / FOLDER / "front-narrow.png", optimize=True)

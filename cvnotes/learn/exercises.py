@@ -26,8 +26,9 @@ CHAPTERS = {
     "ch07": "v_ij nearest_rotation b_from_views a_from_b extrinsics radial_fit bad_views "
     "focal_from_turn camera_covariance levenberg_marquardt",
     "ch08": "bilinear backward_warp count_holes undistortion_map",
-    "ch09": "residuals error_bars which_to_trust own_camera pipeline jackknife",
+    "ch09": "residuals which_to_trust own_camera pipeline",
     "ch10": "depth rectifying_rotation how_far",
+    "ch11": "error_bars jackknife",
 }
 # Asked for in the notebook of further exercises; all others in the notebook of their chapter.
 FURTHER = (

@@ -13,13 +13,13 @@ from cvnotes.show.typeface import svg
 
 STEPS = ("R, T", "÷ z", "lens", "A")
 _IN_WORDS = ("place", "divide", "bend", "pixels")  # below the arrows, where a reader is new
-# Which steps a chapter is about: those of the first page and of chapter 9 are all. Chapter 5 looks
-# for the pixel itself. Chapters 6 and 7 go from the picture back to the world, and chapter 10 finds
-# the depth again by which was divided.
+# Which steps a chapter is about: those of the first page and of chapter 9 are all. Chapters 6 and 7
+# go from the picture back to the world, and chapter 10 finds the depth again by which was divided.
 _LIT: dict[int, tuple[str, ...]] = {
     1: ("÷ z",), 2: ("R, T", "÷ z", "A"), 3: ("R, T", "÷ z", "A"), 4: ("lens",), 5: (),
-    6: ("R, T", "÷ z", "A"), 8: ("lens", "A"), 10: ("÷ z",),
+    6: ("R, T", "÷ z", "A"), 8: ("lens", "A"), 10: ("÷ z",), 11: (),
 }  # fmt: skip
+_BOXED = {5: (4, "the pixel"), 11: (0, "the world")}  # no step, but where the way ends or begins
 _BACKWARDS = (6, 7, 10)
 _WITHOUT_LENS = (2, 3)  # their cameras have none, so their corner goes by another pixel
 _STYLE = (
@@ -60,7 +60,7 @@ def one_corner(chapter: int) -> Picture:
     Parameters
     ----------
     chapter : int
-        0 to 10.
+        From 0 to the last one.
 
     Examples
     --------
@@ -68,7 +68,7 @@ def one_corner(chapter: int) -> Picture:
     One corner: world (200, 125, 0) mm, camera (99.6, 63.5, 283.1) mm, plane z = 1 (0.352, 0.224),
     behind the lens (0.338, 0.215), pixel (595, 411). Lit: lens
     """
-    chapter = whole(chapter, "chapter", at_least=0, at_most=10)
+    chapter = whole(chapter, "chapter", at_least=0, at_most=max(_LIT))
     from cvnotes.pictures import course
 
     camera = course.camera().moved(look_at([125, 40, -285], [100, 62, 0]))
@@ -108,8 +108,8 @@ def one_corner(chapter: int) -> Picture:
         ]
         if chapter == 0:
             parts += [_below_step(layout, k, words) for k, words in enumerate(_IN_WORDS)]
-        if chapter == 5:
-            x, y = layout.place(4) - [3, 4]
+        if chapter in _BOXED:
+            x, y = layout.place(_BOXED[chapter][0]) - [3, 4]
             parts.append(f'<path d="M{x} {y}h{layout.wide + 6}v{layout.tall + 8}'
                          f'h{-layout.wide - 6}z" fill="none" stroke="{ESTIMATED}" '
                          'stroke-width="2"/>')  # fmt: skip
@@ -121,9 +121,10 @@ def one_corner(chapter: int) -> Picture:
         return svg(body, width + 8, height, style=_STYLE, left=-4)
 
     said = [form.format(*numbers) for *_, form, numbers in states]
+    shines = ", ".join(lit) or _BOXED[chapter][1]
     alt = (
         f"One corner: world {said[0]}, camera {said[1]}, plane z = 1 {said[2]}, "
-        f"{behind} {said[3]}, pixel {said[4]}. Lit: {', '.join(lit) or 'the pixel'}"
+        f"{behind} {said[3]}, pixel {said[4]}. Lit: {shines}"
         + (", backwards" if chapter in _BACKWARDS else "")
     )
     width = _STRIP.size[0] + 8

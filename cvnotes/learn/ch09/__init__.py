@@ -1,1 +1,1 @@
-"""Exercises of chapter 9, your own camera: residuals, error bars, judgement, the whole pipeline."""
+"""Exercises of chapter 9, your own camera: residuals, judgement, the whole pipeline."""

@@ -20,7 +20,7 @@ _Z, _X = (-80.0, 580.0), (-200.0, 288.8)  # mm that are seen from above, at equa
 _NUMBERS = 5.0, 45.0, 255.0  # mm: where the first number stands, the next one, and their row
 _LONG = 237.6, 242.4  # mm
 _WALL, _PALE = "#CFCFCA", "#F9DCC8"
-_UNEVEN = 0.10  # mm by which the heights of the sheet scatter, chapter 9
+_UNEVEN = 0.10  # mm by which the heights of the sheet scatter, chapter 11
 _MOST = 0.6  # mm of scatter
 
 

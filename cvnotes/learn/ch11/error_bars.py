@@ -51,7 +51,7 @@ _MISTAKES = mistakes_in(error_bars,
 
 EXERCISE = Exercise(
     name="error_bars",
-    chapter=9,
+    chapter=11,
     title="How sure is each parameter?",
     task="At the end of a least-squares fit there are the Jacobian J (n, p) of the residuals and "
     "the residuals r (n,). Give the standard deviation of each parameter, (p,); the noise is "

@@ -48,7 +48,7 @@ _MISTAKES = mistakes_in(jackknife,
 
 EXERCISE = Exercise(
     name="jackknife",
-    chapter=9,
+    chapter=11,
     title="Your own jackknife",
     task="In each of v views n points of the plane z = 1 should be at xy and were seen at xy_lens, "
     "shape (v, n, 2) each. Fit k = (k1, k2) by least squares to all views but one, for each view "

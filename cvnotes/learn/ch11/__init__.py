@@ -1,0 +1,1 @@
+"""Exercises of chapter 11, the board we believed: two kinds of standard deviations."""
