@@ -735,37 +735,56 @@ def test_the_misses_of_the_real_board_are_those_of_whole_calibrations(believed):
     W = real.board.points
     sides = zip(believed, (real.left, real.right), believed[::-1], strict=True)
     for one, m, other in sides:
-        in_the_sheet = other.off * [1, 1, 0]
+        in_the_sheet = other.off["all of it"] * [1, 1, 0]
         for off in (np.zeros((54, 3)), in_the_sheet):
             with warnings.catch_warnings(action="ignore", category=CalibrationWarning):
                 found = calibrate(W + off, m, real.size, lens="k1 k2 p1 p2")
             assert abs(rms(one.misses(off)) / found.rms - 1) < 0.01
         free = calibrate(W, m, real.size, lens="k1 k2 p1 p2", board="free")
-        assert abs(rms(one.misses(one.off)) / free.rms - 1) < 0.02
-        assert np.allclose(one.off, free.board_points[0] - W, atol=0.03)
+        assert abs(rms(one.misses(one.off["all of it"])) / free.rms - 1) < 0.02
+        assert np.allclose(one.off["all of it"], free.board_points[0] - W, atol=0.03)
 
 
 def test_both_cameras_find_the_same_sheet_and_each_one_serves_the_other(believed):
     left, right = believed
     for axis in range(3):
-        assert np.corrcoef(left.off[:, axis], right.off[:, axis])[0, 1] > 0.94
+        assert (
+            np.corrcoef(left.off["all of it"][:, axis], right.off["all of it"][:, axis])[0, 1]
+            > 0.94
+        )
     for one, other in (believed, believed[::-1]):
-        flat = rms(one.misses(0 * other.off))
-        assert rms(one.misses(other.off)) < 0.55 * flat
-        assert rms(one.misses(other.off[::-1])) > 1.2 * flat
-        best = min(range(41), key=lambda k: rms(one.misses(k / 20 * other.off)))
+        flat = rms(one.misses(0 * other.off["all of it"]))
+        assert rms(one.misses(other.off["all of it"])) < 0.55 * flat
+        assert rms(one.misses(other.off["all of it"][::-1])) > 1.2 * flat
+        best = min(range(41), key=lambda k: rms(one.misses(k / 20 * other.off["all of it"])))
         assert abs(best - 20) <= 1
+
+
+def test_shifts_within_the_sheet_explain_more_than_heights_and_each_is_the_best_of_its_kind(
+    believed,
+):
+    left, _ = believed
+    flat = rms(left.misses(np.zeros((54, 3))))
+    own = {part: rms(left.misses(off)) for part, off in left.off.items()}
+    assert own["all of it"] < own["its shifts"] < 0.7 * flat < own["its heights"] < 0.95 * flat
+    for part, axes in {"its shifts": [0, 1], "its heights": [2]}.items():
+        off = left.off[part]
+        assert not np.delete(off, axes, axis=1).any()
+        for step in np.random.default_rng(0).normal(0, 0.02, (20, 54, len(axes))):
+            moved = off.copy()
+            moved[:, axes] += step
+            assert rms(left.misses(moved)) > own[part]
 
 
 @pytest.mark.parametrize("amount", [0, 0.5, 1, 2])
 def test_the_orange_sheet_is_the_blue_one_once_and_the_bar_is_the_left_cameras(believed, amount):
     left, right = believed
     drawing = MODELS["sheets"].drawing(amount=amount)
-    after = rms(left.misses(amount * right.off))
+    after = rms(left.misses(amount * right.off["all of it"]))
     said = [
-        rms(left.misses(0 * left.off)),
+        rms(left.misses(0 * left.off["all of it"])),
         *([after] if amount else []),
-        rms(left.misses(left.off)),
+        rms(left.misses(left.off["all of it"])),
     ]
     assert np.allclose(
         [float(x) for x in re.findall(r"by (0\.\d+)", drawing.sentence)], said, atol=6e-4

@@ -20,6 +20,7 @@ _LENS = "k1 k2 p1 p2"
 _MAGNIFIED, _LIFTED = 100, 45.0  # times; mm by which the sheet hangs over its shadow
 _SHEET, _BAR, _SHOWN = (340, 240), (150, 240), ((-165.0, 165.0), (-116.5, 116.5))
 _HIGHEST = 0.19  # px, of the bar
+_PARTS = {"all of it": (0, 1, 2), "its shifts": (0, 1), "its heights": (2,)}
 _ROUNDING = 1e-9  # smaller singular values are those of moving or scaling the whole board
 _MOST, _HELD = 2.0, 29  # of the other camera's sheet; the corner that is pulled
 _EYE = Camera(intrinsics(750, 750, 0, 0), look_at([120, 560, -560], [120, 82, -20], up=(0, 0, -1)))
@@ -61,8 +62,16 @@ class Believed:
         self._board = D.reshape(rows, -1)
         self._board -= Q @ (Q.T @ self._board)
         self._shape = m.shape
-        off = np.linalg.lstsq(self._board, self._missed, rcond=_ROUNDING)[0]
-        self.off = off.reshape(n, 3)  # how far each corner lies beside its place, mm
+        self.off = {part: self._off(axes) for part, axes in _PARTS.items()}
+
+    def _off(self, axes: tuple[int, ...]) -> Array:
+        """Find how far each corner (n, 3) lies beside its place along some axes, in mm."""
+        off = np.zeros((self._shape[1], 3))
+        moved = np.ix_(range(len(off)), axes)
+        some = self._board.reshape(len(self._board), *off.shape)[:, *moved]
+        found = np.linalg.lstsq(some.reshape(len(some), -1), self._missed, rcond=_ROUNDING)[0]
+        off[moved] = found.reshape(off[moved].shape)
+        return off
 
     def misses(self, off: Array) -> Array:
         """Return observed minus predicted pixels (views, n, 2) on a board with moved corners.
@@ -79,31 +88,37 @@ def sheets_model() -> Model:
     left, right = Believed(real.left), Believed(real.right)
     said = "how much of the right camera's sheet the left camera is given"
     amount = Setting("amount", "right camera's sheet ×", 0, _MOST, 0.05, 1, said)
+    said = "along which axes corners may leave their places: within the sheet, or up and down"
+    part = Setting("part", "of it", 1, 3, 1, 1, said, names=tuple(_PARTS))
     about = (
         "A printed sheet in space, its faults drawn a hundred times as large: blue as the left "
         "camera of a real pair finds it, orange so much of what the right one finds; and the RMS "
         "of the left camera on the orange sheet."
     )
-    flat, whole = (_EYE.project(_in_space(a * right.off))[_HELD] for a in (0, 1))
 
-    def pulled(_: Values, at: Array) -> Values:
+    def pulled(values: Values, at: Array) -> Values:
+        off = right.off[_part(values)]
+        flat, whole = (_EYE.project(_in_space(a * off))[_HELD] for a in (0, 1))
         way = whole - flat
         return {"amount": float((at - flat) @ way / (way @ way))}
 
-    return Model("sheets", about, (amount,), partial(_draw, left, right), {"corner": pulled})
+    return Model("sheets", about, (amount, part), partial(_draw, left, right), {"corner": pulled})
+
+
+def _part(values: Values) -> str:
+    return [*_PARTS][int(values["part"]) - 1]
 
 
 def _draw(left: Believed, right: Believed, paper: Paper, values: Values) -> Drawing:
     amount = values["amount"]
-    before, own, after = (
-        rms(left.misses(off)) for off in (0 * left.off, left.off, amount * right.off)
-    )
+    own_off, given = left.off[_part(values)], amount * right.off[_part(values)]
+    before, own, after = (rms(left.misses(off)) for off in (0 * given, own_off, given))
     blue = paper.panel(_SHEET, *_SHOWN, "the left camera's own sheet")
     name = f"the right camera's sheet × {amount:g}" if amount else "a flat sheet"
     orange = paper.panel(_SHEET, *_SHOWN, name)
-    _put(blue, left.off, LENS)
-    _put(orange, amount * right.off, ESTIMATED)
-    held = _EYE.project(_in_space(amount * right.off))[_HELD]
+    _put(blue, own_off, LENS)
+    _put(orange, given, ESTIMATED)
+    held = _EYE.project(_in_space(given))[_HELD]
     orange.grip("corner", "a corner of the orange sheet, to be pulled up", held, 1.3)
     bar = paper.panel(_BAR, (0, 1), (1.1 * _HIGHEST, -0.04 * _HIGHEST), "left camera's RMS (px)")
     bar.polygons([[[0.1, 0], [0.42, 0], [0.42, after], [0.1, after]]], ESTIMATED)
