@@ -6,7 +6,9 @@ test_site_live.py, with photographs dropped in test_site_offline.py.
 
 import io
 import re
+from pathlib import Path
 
+import nbformat
 import numpy as np
 import pytest
 from accessible import violations
@@ -16,6 +18,7 @@ from PIL import Image
 from cvnotes.show.explorations import model
 from cvnotes.targets import Chessboard, find_corners
 
+CHAPTER = Path(__file__).parents[1] / "notebooks" / "06_homography_dlt.ipynb"
 pytestmark = [pytest.mark.slow, pytest.mark.once]
 
 # What has the focus: its kind and its name, how it is seen to have it, and whether it can be seen.
@@ -84,9 +87,10 @@ def test_the_keyboard_alone_reaches_all_and_is_held_nowhere(page, live_site):
             page.keyboard.press("Escape")
     assert focused["kind"] == "body", reached[-5:]  # and goes on at the browser's own buttons
     kinds = [kind for kind, _ in reached]
-    explored = [
-        model(name) for name in ("homography", "ellipse", "origin", "swing", "parabola", "ransac")
-    ]
+    cells = nbformat.read(CHAPTER, as_version=4).cells
+    code = "\n".join(cell.source for cell in cells if cell.cell_type == "code")
+    explored = [model(name) for name in re.findall(r'explore\("(\w+)"', code)]
+    assert len(explored) >= 5
     assert (
         kinds.count("range")
         == moved
