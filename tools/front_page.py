@@ -52,9 +52,9 @@ check("camera_centre", my_camera_centre)"""
 # Before the picture, which follows the hand.
 QUESTION = """<p class="front-question"><strong>The tower is not there:</strong> it is drawn where
 the camera would see it. Pull it. Then pull the camera nearer, as if we had mistaken where it stood.
-Can its glass pane alone bring the tower back into the dashed lines?</p>"""
+Can its glass pane alone bring the tower back into the dashed outline?</p>"""
 # Below it.
-SOLUTION = """<details><summary>Answer</summary><p>No, one spot at most: where the foot is right,
+SOLUTION = """<details><summary>Answer</summary><p>No: when the foot is right,
 the top is not. <a href="notebooks/00_start_here.html">Chapter 0</a> says why.</p></details>"""
 # What docs/static/live/exercises.js makes a box of.
 BOX = """A student's answer is in the box: press *Check*.

@@ -52,7 +52,7 @@ def clicks_model() -> Model:
     def draw(paper: Paper, values: Values) -> Drawing:
         v, c, f = found(values["noise"])
         far = paper.panel(
-            _SIZE, *_SHOWN, f"200 measurements, their scatter {_TIMES} times as large"
+            _SIZE, *_SHOWN, f"200 measurements, their scatter {_TIMES} times too large"
         )
         far.image(sheet(paper.sharpness))
         for family, true in zip(_EDGES, _TRUE, strict=True):

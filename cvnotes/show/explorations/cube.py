@@ -98,11 +98,10 @@ def cube_model() -> Model:
         panel.image(_in_the_shade(photo(), camera, base, h))
         corners = _draw_tower(panel, camera, base, h)
         off = np.linalg.norm(camera.project(corners) - _CAMERA.project(corners), axis=1)
-        if off.max() > 1:
-            for i, j in _EDGES:  # where it belongs
-                edge = corners[i] + np.linspace(0, 1, 9)[:, None] * (corners[j] - corners[i])
-                panel.line(_CAMERA.project(edge), "white", 1.6)
-                panel.line(_CAMERA.project(edge), IDEAL, 1.6, dash=4)
+        for i, j in _outline(_CAMERA.project(corners)):  # where it belongs
+            edge = corners[i] + np.linspace(0, 1, 9)[:, None] * (corners[j] - corners[i])
+            panel.line(_CAMERA.project(edge), "white", 1.6)
+            panel.line(_CAMERA.project(edge), IDEAL, 1.6, dash=4)
         panel.grip("foot", "the foot of the tower", camera.project([*foot, 0]), 5)
         panel.grip("top", "the top of the tower", camera.project([*foot, -h]), 12)
         u, v = ((0, 1080), (95, 665)) if paper.narrow else ((160, 960), (0, 810))
@@ -209,6 +208,12 @@ def _draw_side(
     light = _SKY + _SUN * max(out * float(_LIGHT[axis]), 0)
     inks = [hexed((light * p * (1 - k)).clip(0, 255)) for p, k in zip(paint, near, strict=True)]
     panel.polygons(np.split(camera.project(W), parts), inks)
+
+
+def _outline(m: Array) -> list[tuple[int, int]]:
+    """Return those edges of a tower, seen at m (8, 2), of which it lies to one side."""
+    sides = [((m - m[i]) @ [m[i, 1] - m[j, 1], m[j, 0] - m[i, 0]], (i, j)) for i, j in _EDGES]
+    return [edge for side, edge in sides if side.min() > -1 or side.max() < 1]
 
 
 def _tiles(width: float, high: float, rows: int, columns: int) -> list[Array]:

@@ -100,7 +100,7 @@ def _draw_way(panel: Panel, tilt: float, roll: float) -> None:
     panel.mark(_MIDDLE, "ideal", 8)
     panel.text(_MIDDLE + [16, 18], "c", IDEAL, size=16)
     if np.tan(tilt) > 0.03:
-        panel.text((_MIDDLE + near) / 2 - [14, 0], "f tan t", ESTIMATED, anchor="rm", size=15)
+        panel.text((_MIDDLE + near) / 2 - [14, 0], "f tan(tilt)", ESTIMATED, anchor="rm", size=15)
     panel.grip("horizon", "the point of the horizon that is nearest to c", near, 2)
 
 
@@ -132,4 +132,4 @@ def _sentence(height: float, t: float) -> str:
     else:
         said += f": the horizon cuts every pole {height:.2f} m above its foot."
     away = f"{_FOCAL:.0f} · tan {t:.1f}° = {_FOCAL * np.tan(np.radians(t)):.0f} px"
-    return f"{said} From c to it: f tan t = {away}."
+    return f"{said} From c to it: f tan(tilt) = {away}."

@@ -13,7 +13,7 @@ from cvnotes.show.explorations.paper import Drawn, Panel, Paper
 from cvnotes.show.explorations.strokes import circle
 from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, MUTED, WORLD, mixed
 
-_CAMERA, _DOWN, _HALFWAY, _CELL = Camera(course.camera().A), 1.6, 20.0, 4.0  # m
+_CAMERA, _DOWN, _HALFWAY, _CELL = Camera(course.camera().A), 1.95, 20.0, 4.0  # m; the grass
 _MAP, _VIEW, _FINER = (330, 330), (440, 330), 1.375  # px; the photograph is finer than _CAMERA's
 _SHOWN = (-0.565, 0.565), (1.105, -0.025)  # of the map, whose rim has the radius 1
 _DISC, _DISC_AT = 0.16, np.array([-0.38, 0.19])  # the whole map, small, beside what is shown

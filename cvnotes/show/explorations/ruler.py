@@ -18,8 +18,8 @@ _LEFT, _TOP, _SIZE, _SHARP = 75, 152, (280, 210), 4  # px: what of the picture i
 _X, _GROUND, _UP, _FIRST, _GAP = -4.0, 1.95, -4.05, 15.0, 25.0
 _FEET = _CAMERA.project([[_X, _GROUND, _FIRST + _GAP * i] for i in range(2)])
 _END, _TOP_OF_FIRST = _CAMERA.A[:2, 2], _CAMERA.project([_X, _UP, _FIRST])
-_CLICK, _FARTHEST = 0.3, 112.0  # px by which a foot is missed; m that the plan shows
-_LONGER = 10  # times as long as the ± is the bar that shows it
+_CLICK, _FARTHEST = 0.3, 112.0  # px by which its row is missed; m that the plan shows
+_LONGER = 4  # times as long as the ± is the bar that shows it
 
 
 def ruler_model() -> Model:
@@ -45,8 +45,8 @@ def ruler_model() -> Model:
     def draw(paper: Paper, values: Values) -> Drawing:
         part = (values["row"] - _FEET[0, 1]) / (_END[1] - _FEET[0, 1])  # of the way to the end
         foot = _FEET[0] + part * (_END - _FEET[0])
-        off = _CLICK * np.array([-1, 1]) * (_END - _FEET[0])[1] / np.linalg.norm(_END - _FEET[0])
-        t, near, far = behind_the_first([foot[1], *(foot[1] + off)]).tolist()
+        clicked = foot[1] + _CLICK * np.array([0, 1, -1])
+        t, near, far = behind_the_first(clicked).tolist()
         x, y = (_LEFT - 0.5, _LEFT + _SIZE[0] - 0.5), (_TOP - 0.5, _TOP + _SIZE[1] - 0.5)
         panel = paper.panel((440, 330), x, y, "the picture: pull the orange pole by its foot")
         panel.image(photograph())

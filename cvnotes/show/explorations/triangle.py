@@ -22,7 +22,7 @@ _MIDDLE = np.array([75.0, 0, 50])  # (u, v, w) about which the view of space tur
 _ABOVE = np.radians(15)  # from where it is seen
 _RING, _LOW = 560.0, 1440.0  # px: radius of the ring by which it is turned, and its v
 _BEHIND = 1.25  # times as far from the eye as the glass: where the box stands
-_ASIDE = 75  # degrees: from there on the triangle of H, eye and Y is seen well
+_ASIDE = 55  # degrees: from there on the triangle of H, eye and Y is drawn
 _CLEAR = 128  # of 255: how much of its ink the glass lays over what is behind it
 _AROUND = (0, 45, -45, 90, -90, 135, -135, 180)  # degrees: where a letter may stand
 _PANE, _CORE, _FACES = "#D5EAF7", "#FFFFFF", ("#E6DCD6", "#F4EFEB", "#D8CBC3")
@@ -218,7 +218,7 @@ def _draw_rods(panel: Panel, turn: float, v: Array, eye: Array, square: float, b
         face[[i, j]] for face in box for i, j in ((0, 1), (1, 2), (2, 3), (3, 0), (0, 2), (1, 3))
     ]
     panel.segments(sides, ESTIMATED, 1.5)
-    from_aside = abs(turn) > _ASIDE  # from where the half circle is asked about
+    from_aside = abs(turn) > _ASIDE  # from where the half circle is seen well
     if np.isfinite(square) and from_aside:
         phi, foot = np.radians(np.arange(0, 181.0, 3)), _feet(v)[1]
         half = (v[1] - foot) / 2
