@@ -67,10 +67,9 @@ class Believed:
     def _off(self, axes: tuple[int, ...]) -> Array:
         """Find how far each corner (n, 3) lies beside its place along some axes, in mm."""
         off = np.zeros((self._shape[1], 3))
-        moved = np.ix_(range(len(off)), axes)
-        some = self._board.reshape(len(self._board), *off.shape)[:, *moved]
+        some = self._board.reshape(-1, *off.shape)[..., list(axes)]
         found = np.linalg.lstsq(some.reshape(len(some), -1), self._missed, rcond=_ROUNDING)[0]
-        off[moved] = found.reshape(off[moved].shape)
+        off[:, list(axes)] = found.reshape(len(off), -1)
         return off
 
     def misses(self, off: Array) -> Array:
