@@ -2158,6 +2158,27 @@ def test_a_ring_is_as_large_as_the_rms_of_a_point():
         assert count(drawn[v - 1 : v + 2, u - 1 : u + 2], LENS, 60) >= 2
 
 
+def test_what_is_dashed_is_how_far_the_noise_alone_moves_a_corner_that_is_known_but_for_its_place():
+    blur, x = np.sqrt(2) * 0.757, np.arange(-8.0, 9.0)
+    edge, steep = [95 * erf(each / blur) for each in x], 190 / np.sqrt(np.pi) / blur
+    slope = clouds._slope(np.array(edge)[:, None])[3:-3, 0]  # at the ends it goes round
+    exact = steep * np.exp(-((x[3:-3] / blur) ** 2))
+    assert np.sum(slope**2) == pytest.approx(np.sum(exact**2), rel=0.06)
+
+    photo, (u, v) = course.photos()[6].astype(float), np.rint(course.exact_corners()[6][22])
+    near = np.s_[int(v) - 8 : int(v) + 9, int(u) - 8 : int(u) + 9]
+    J = np.stack([clouds._slope(photo.T).T[near].ravel(), clouds._slope(photo)[near].ravel()], 1)
+    noise = np.random.default_rng(0).normal(scale=2, size=(289, 2000))
+    moved = np.linalg.lstsq(J, noise, rcond=None)[0]
+    assert clouds.allowed()[5] == pytest.approx(np.sqrt(2 * np.mean(moved**2)), rel=0.04)
+
+    def dark(which):  # px of the dashed curve, in the middle of the curves
+        drawn = MODELS["clouds"].picture(picture=which)[TITLE + 400 : TITLE + 520, -130:-10]
+        return int((drawn.max(axis=-1) < 60).sum())
+
+    assert dark(1) > dark(4) + 40  # the noise of the other four is another one
+
+
 def test_it_is_told_when_errors_lie_outside_of_their_panel():
     def words(**values):
         picture = MODELS["clouds"].picture(**values)[TITLE + 334 : TITLE + 356]

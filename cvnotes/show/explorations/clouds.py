@@ -17,6 +17,7 @@ from cvnotes.targets import refine_edges, refine_subpixel
 _VIEW, _CORNER = 6, 22  # which photograph of the course, and which of its corners is shown
 _PICTURES = "as computed", "sharpened", "JPEG, quality 30", "5 px shake", "rays, no blur"
 _METHODS = ("gradients", LENS), ("edge model", ESTIMATED)
+_NOISE = 2  # grey levels, of the first picture
 _WINDOWS = np.arange(3, 13)  # px, from the middle to the border
 _REACH, _SHOWN = 0.1, 14  # px, of the clouds, all alike, and of the pictures
 _LEAST, _MOST = 0.0038, 0.25  # px, of the curves
@@ -32,8 +33,9 @@ def clouds_model() -> Model:
     )
     about = (
         "The errors of 54 corners by the gradients, blue, and by the model of two blurred edges, "
-        "orange, with rings as large as the RMS of a point; below, the same corner in five "
-        "pictures, with its window; beside it how large the rings are, for each window."
+        "orange, with rings as large as the RMS of a point (dashed: what the noise allows); below, "
+        "the same corner in five pictures, with its window; beside it how large the rings are, for "
+        "each window."
     )
     drags = {
         "window": lambda _, at: {"window": at[0]},
@@ -89,13 +91,33 @@ def errors(which: int) -> Array:
     return np.asarray(np.array([by_gradients, by_edges]) - truth)
 
 
+@lru_cache(maxsize=1)
+def allowed() -> Array:
+    """Return the least RMS of a point that the noise of the first picture allows, by window."""
+    photo, least = course.photo(_VIEW).astype(float), []
+    slopes = np.stack([_slope(photo.T).T, _slope(photo)])  # by u and by v
+    for half in _WINDOWS:
+        for u, v in np.rint(course.exact_corners()[_VIEW]).astype(int):
+            g = slopes[:, v - half : v + half + 1, u - half : u + half + 1].reshape(2, -1)
+            least.append(np.sum(_NOISE**2 / np.linalg.eigvalsh(g @ g.T)))
+    return np.asarray(np.sqrt(np.mean(np.reshape(least, (len(_WINDOWS), -1)), axis=1)))
+
+
+def _slope(grey: Array) -> Array:
+    """Return the derivative downwards; three neighbours on each side keep steep edges steep."""
+    parts = zip((1, 2, 3), (45, -9, 1), strict=True)
+    differences = [w * (np.roll(grey, -k, axis=0) - np.roll(grey, k, axis=0)) for k, w in parts]
+    return np.asarray(sum(differences) / 60)
+
+
 def _draw(paper: Paper, values: Values) -> Drawing:
     window, which = round(values["window"]), round(values["picture"])
     off = errors(which)
     rms = np.sqrt(2 * np.nanmean(off**2, axis=(2, 3)))  # of a point
     now = int(window - _WINDOWS[0])
-    cloud = _cloud(paper, off[:, now], rms[:, now])
-    drawn = paper.join(([cloud, _strip(paper, window, which)], _curves(paper, rms, now)))
+    least = allowed() if which == 1 else None  # the noise of the others is another one
+    cloud = _cloud(paper, off[:, now], rms[:, now], None if least is None else float(least[now]))
+    drawn = paper.join(([cloud, _strip(paper, window, which)], _curves(paper, rms, now, least)))
     (gradients, edges), name = rms[:, now], _PICTURES[which - 1]
     lost = int(np.isnan(off[:, now, :, 0]).any(axis=0).sum())
     larger = "blue" if gradients > edges else "orange"
@@ -131,7 +153,7 @@ def _strip(paper: Paper, window: int, which: int) -> Panel:
     return panel
 
 
-def _cloud(paper: Paper, off: Array, rms: Array) -> Panel:
+def _cloud(paper: Paper, off: Array, rms: Array, least: float | None) -> Panel:
     """Draw the errors, and rings as large as the RMS of a point; the smaller cloud on top."""
     reach, aside = _REACH, _REACH * _CLOUD[0] / _CLOUD[1]
     panel = paper.panel(_CLOUD, (-aside, aside), (-reach, reach), "errors of 54 corners")
@@ -143,6 +165,8 @@ def _cloud(paper: Paper, off: Array, rms: Array) -> Panel:
         panel.polygons(off[k][:, None] + dot, mixed("#FFFFFF", _METHODS[k][1], 0.7))
     for k in order:
         panel.line(rms[k] * ring, _METHODS[k][1], 2)
+    if least:
+        panel.line(least * ring, IDEAL, 2, dash=4)
     panel.mark([0, 0], "ideal", 7)
     bar = reach / 2  # px, as long as the scale in the corner
     panel.line([[0.95 * aside - bar, 0.86 * reach], [0.95 * aside, 0.86 * reach]], IDEAL, 2)
@@ -154,7 +178,7 @@ def _cloud(paper: Paper, off: Array, rms: Array) -> Panel:
     return panel
 
 
-def _curves(paper: Paper, rms: Array, now: int) -> Panel:
+def _curves(paper: Paper, rms: Array, now: int, least: Array | None) -> Panel:
     """Draw the RMS of a point against the window, as a logarithm."""
     ends = (np.log10(_MOST), np.log10(_LEAST))
     panel = paper.panel(_CURVES, (2, 13), ends, "RMS (px), by the width of the window")
@@ -163,9 +187,14 @@ def _curves(paper: Paper, rms: Array, now: int) -> Panel:
     for value in (0.005, 0.01, 0.02, 0.05, 0.1, 0.2):
         panel.line([[0, np.log10(value)], [14, np.log10(value)]], "#DDDDDD", 0.5)
         panel.text([2.1, np.log10(value)], f"{value:g}", size=12)
+    if least is not None:
+        panel.line(np.column_stack([_WINDOWS, np.log10(least)]), IDEAL, 1.6, dash=4)
+        panel.text([6.4, np.log10(least[3]) - 0.06], "noise", IDEAL, anchor="ra", size=13)
     for curve, (name, colour) in zip(rms, _METHODS, strict=True):
         panel.line(np.column_stack([_WINDOWS, np.log10(curve)]), colour, 2.2)
-        upper = curve[-1] == rms[:, -1].max()  # its name is above it, that of the lower one below
+        upper = (
+            curve[-1] == rms[:, -1].max() or least is not None
+        )  # its name is above it, that of the lower one below
         at = np.log10(curve[-4:].max() if upper else curve[-4:].min()) + (0.03 if upper else -0.03)
         panel.text([12.8, at], name, colour, anchor="rd" if upper else "ra", size=13)
         panel.mark([_WINDOWS[now], np.log10(curve[now])], "ideal", 6)
