@@ -111,7 +111,7 @@ def _moves(paper: Paper, pair: Pair, tried: Array, noise: Array) -> Panel:
     """Draw what both unknowns do to the corners, one arrow after the other, and the noise."""
     high = 0.8
     half = high * _MOVES[0] / _MOVES[1]
-    title = "corners move out: right →, left ↑ (px)"
+    title = "→ right corner moves out, ↑ left one (px)"
     panel = paper.panel(_MOVES, (-half, half), (high, -high), title)
     panel.ticks(x=(-0.5, 0, 0.5), y=(-0.5, 0, 0.5))
     _dots(panel, noise)

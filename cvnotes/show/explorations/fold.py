@@ -21,7 +21,8 @@ _EYES = (([163, 203.5, -92.5], (0, 0, -1)), ([-15, 187, -120], (0.5, 0, 0.87)))
 _SPACE, _FACE, _SIDE = (500, 420), (350, 150), (350, 242)  # px: the two stand below each other
 _SCALE = 0.62  # of the hinge, face on
 _VIEW = look_at([-850, 370, -370], [0, 0, 0], up=(0, 0, -1))[:3, :3]  # from the left, above
-_LOWEST, _HIGHEST = 20, 130  # degrees, of the fold
+_LOWEST, _HIGHEST, _STEP = 20, 130, 0.05  # degrees, of the fold
+_MEET, _NEAR = 59.15, 0.25  # where the second half circle is met; a hand so near takes it
 _SHOWN = ((-360, 790), (-650, 316))  # x and y of the sheet on which space is drawn
 _INKS = (IDEAL, MUTED)  # of the first photograph and of the second
 _SQUARE, _PALE, _LID = "#B0B0B0", "#BDBDBD", "#E3EEF7"
@@ -98,7 +99,7 @@ def two_photographs() -> tuple[list[Camera], list[Array], list[Circle]]:
 
 
 _HINGE = Setting(
-    "fold", "hinge (°)", _LOWEST, _HIGHEST, 0.5, 50,
+    "fold", "hinge (°)", _LOWEST, _HIGHEST, _STEP, 50,
     "the angle of the eye over the photograph, about its horizon",
 )  # fmt: skip
 _SECOND = Setting("second", "second photograph", 0, 1, 1, 0, "of the same board, from elsewhere")
@@ -106,13 +107,14 @@ _SECOND = Setting("second", "second photograph", 0, 1, 1, 0, "of the same board,
 
 def _turned_to(circle: Circle, *, side: bool = False) -> Drag:
     """Return what turns the eye on its circle to where it is pulled, in space or from the side."""
-    folds = np.arange(_LOWEST, _HIGHEST + 0.5, 0.5)
+    folds = np.arange(_LOWEST, _HIGHEST + _STEP, _STEP)
     way = circle.place(folds)
     places = way[:, 1:2] if side else on_sheet(way)  # from the side along the curve, by its x
 
     def pulled(_: Values, at: Array) -> Values:
         away = np.linalg.norm(places - at[: places.shape[1]], axis=1)
-        return {"fold": float(folds[away.argmin()])}
+        fold = float(folds[away.argmin()])
+        return {"fold": _MEET if abs(fold - _MEET) <= _NEAR else fold}
 
     return pulled
 

@@ -23,7 +23,7 @@ def parabola_model() -> Model:
     """Make the model of a floor believed t mm too far away, and of the steps that find this t."""
     settings = (
         Setting("t", "t (mm)", _NEAREST, _FARTHEST, 1, 200, "where the parabola touches the cost"),
-        Setting("mu", "μ", 0, 0.3, 0.01, 0, "the damping: it makes the parabola narrower"),
+        Setting("mu", "μ", 0, 3, 0.05, 0, "the damping: by this fraction the parabola is narrower"),
     )
     about = (
         "The cost over one unknown t as a hilly ground, a parabola that touches it where t is, and "
@@ -51,7 +51,7 @@ def walk(t: float, mu: float) -> Array:
     way = [t]
     for _ in range(_STEPS):
         r, J = residuals(way[-1])
-        way.append(way[-1] - float(J @ r / (J @ J + mu)))
+        way.append(way[-1] - float(J @ r / (J @ J) / (1 + mu)))
     return np.array(way)
 
 
@@ -74,7 +74,7 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     panel.line(curve, LENS, 2.4)
     at, way, (r, J) = np.array([t, cost(t)]), walk(t, mu), residuals(t)
     across = np.linspace(left, right, 400)
-    free, touching = (at[1] + (2 * J @ r + (J @ J + more) * (across - t)) * (across - t)
+    free, touching = (at[1] + (2 * J @ r + (1 + more) * J @ J * (across - t)) * (across - t)
                       for more in (0, mu))  # fmt: skip
     if mu:
         panel.line(np.column_stack([across, free]), mixed("#FFFFFF", ESTIMATED, 0.6), 1.4, dash=5)
