@@ -2710,6 +2710,10 @@ def test_the_end_of_the_edge_goes_along_its_ray_and_the_arrows_to_where_the_lens
     assert grip_of(drawing, "edge").at == pytest.approx(
         end * (1 - 0.2 * r2 + 0.1 * r2**2), abs=1e-5
     )
+    on_the_curve = np.hypot(*end), np.hypot(*grip_of(drawing, "edge").at)  # the same point
+    assert grip_of(drawing, "curve").at == pytest.approx(on_the_curve, abs=1e-5)
+    low, high = (model.dragged("curve", (0, y), k2=0)["k1"] for y in (0.6, 0.7))
+    assert high - low == pytest.approx(0.1 / np.hypot(*end) ** 3, abs=0.011)
     starts, ways = arrows[0]
     r2 = (starts**2).sum(axis=1, keepdims=True)
     assert len(starts) > 12

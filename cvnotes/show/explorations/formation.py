@@ -138,6 +138,8 @@ def _draw_frame(paper: Paper, camera: Camera, W: Array, way: float) -> tuple[Pan
         v0 = camera.A[1, 2]
         sides = camera.ideal([[-0.5, v0], [camera.size[0] - 0.5, v0]])[:, 0]
         frame.line(np.column_stack([_PLANE * sides, [_PLANE, _PLANE]]), CAMERA, 3)
+        left = [_PLANE * sides[0] - 8 * frame.pixel, _PLANE]
+        frame.text(left, "z = 1 (not to scale)", CAMERA, anchor="rm", size=12)
         flat = on_the_way(corners)  # what is left where the faces are seen edge-on
         frame.line(flat[[flat[:, 0].argmin(), flat[:, 0].argmax()]], WORLD, 4)
         if slid < 1:

@@ -18,10 +18,10 @@ from cvnotes.warping import backward_warp
 _EXTENT = 0.6  # of what is to be seen on the plane z = 1, in x and y
 _EDGE = np.array([[x, 1600, 3500] for x in np.linspace(-2500, 2500, 51)])  # of the tiles, mm
 _END = _EDGE[-1, :2] / 3500  # where it is taken hold of, as an ideal lens shows it
-_ARROWS = np.array([[0.8, 0], [0.78, 0.3], [0.78, -0.3], [0.72, -0.52], [0.4, -0.5], [0.4, 0.56]])
+_ARROWS = np.array([[0.8, 0], [0.65, 0.26], [0.65, -0.26], [0.72, -0.52], [0.4, -0.5], [0.4, 0.56]])
 _ARROWS = np.concatenate([_ARROWS, _ARROWS * [-1, 1], [[-0.714, 0.457], [0, 0.7], [0, -0.7]]])
 _GUESSED = _ARROWS[0]  # how far it is moved is what the chapter lets one guess
-_HELD = 0.6  # where the curve is taken hold of
+_HELD = float(np.linalg.norm(_END))  # the same point, where the curve is taken hold of
 _RADIUS = 1.3  # of the curve r L(r)
 _SIZE = (430, 360)
 _DETAIL = 450  # px of the photograph of the room for a length of 1 on the plane z = 1
@@ -42,11 +42,11 @@ def lens_model(camera: Camera, _: Chessboard) -> Model:
     about = (
         "A room seen through a lens, with arrows from where an ideal lens shows its points, and an "
         "edge of its tiles beside a ruler; beside it the observed radius r L(r) against the ideal "
-        "radius r, with the same arrows, and the fold where the model ends."
+        "radius r, with the same arrows and the edge's end, and the fold where the model ends."
     )
 
     def pulled(values: Values, at: Array) -> Values:
-        """Choose the k1 whose curve goes through a height over the radius of the grip."""
+        """Choose the k1 whose curve has a height over the ideal radius of the edge's end."""
         r2 = _HELD**2
         return {"k1": float((at[1] / _HELD - 1 - values["k2"] * r2**2) / r2)}
 
@@ -197,7 +197,10 @@ def _draw_curve(panel: Panel, lens: Lens, moved: Array) -> None:
     panel.text([_GUESSED[0] - 7 * panel.pixel, 0.72], "?", IDEAL, anchor="rm", size=18)
     held = [_HELD, float(seen_radius(lens, np.array(_HELD)))]
     panel.mark(held, "lens", 8)
-    panel.grip("curve", "the curve of k₁", held, 2)
+    side = 1 if held[1] <= _HELD else -1  # of the curve, away from the dashed line
+    beside = np.array(held) + 12 * side * panel.pixel * np.array([1, -1])
+    panel.text(beside, "the edge's end", LENS, anchor="la" if side > 0 else "rd", size=13)
+    panel.grip("curve", "the end of the edge, on the curve", held, 2)
     if lens.max_radius < _RADIUS:
         panel.line([[lens.max_radius, 1.2], [lens.max_radius, -0.2]], ESTIMATED, 1)
         near = lens.max_radius < 0.6  # then there is room above the curves, else below
