@@ -55,9 +55,8 @@ def _as_near(W: Array, case: Case) -> bool:
 
 def _on_both(W: Array, case: Case) -> bool:
     C1, d1, C2, d2 = case.args
-    return max(_off_ray(W, C1, d1), _off_ray(W, C2, d2)) < 1e-5 * case.slack * np.linalg.norm(
-        C2 - C1
-    )
+    off = max(_off_ray(W, C1, d1), _off_ray(W, C2, d2))
+    return bool(off < 1e-5 * case.slack * np.linalg.norm(C2 - C1))
 
 
 _MISTAKES = mistakes_in(between_rays,
