@@ -491,6 +491,12 @@ def my_rectifying_rotation(R, left, right):
     return np.stack([x, np.cross(z, x), z])
 
 
+def my_between_rays(C1, d1, C2, d2):
+    D = np.column_stack([d1, -d2])
+    s, t = np.linalg.lstsq(D, C2 - C1, rcond=None)[0]
+    return C1 + s * d1 + (C2 + t * d2 - C1 - s * d1) / 2
+
+
 def my_depth(alpha, b, u_left, u_right):
     return [alpha * b / d if d else float("inf") for d in u_left - u_right]
 

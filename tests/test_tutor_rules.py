@@ -666,6 +666,7 @@ EQUIVALENT = {
     "backward_warp": (1, "ones of the same shape"),
     "count_holes": (1, "width × height in any order"),
     "rectifying_rotation": (1, "the base line has the direction of x"),
+    "between_rays": (7, "dot products in any order; all cross products the other way round"),
     "depth": (1, "a product divided in another order"),
     "error_bars": (1, "r @ r in any order"),
     "jackknife": (7, "a standard deviation has no sign, nor what is squared"),

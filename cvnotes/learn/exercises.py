@@ -27,13 +27,14 @@ CHAPTERS = {
     "focal_from_turn camera_covariance levenberg_marquardt",
     "ch08": "bilinear backward_warp count_holes undistortion_map",
     "ch09": "residuals which_to_trust own_camera pipeline",
-    "ch10": "depth rectifying_rotation how_far",
+    "ch10": "depth between_rays rectifying_rotation how_far",
     "ch11": "error_bars jackknife",
 }
 # Asked for in the notebook of further exercises; all others in the notebook of their chapter.
 FURTHER = (
     "line_through field_of_view form_image geometric_error nearest_rotation b_from_views "
-    "radial_fit focal_from_turn camera_covariance bilinear which_to_trust pipeline how_far"
+    "radial_fit focal_from_turn camera_covariance bilinear which_to_trust pipeline how_far "
+    "rectifying_rotation"
 )
 
 

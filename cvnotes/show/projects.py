@@ -58,7 +58,7 @@ def exercise_map() -> Picture:
         ("Without a board", _turned(), "8 ★★★"), ("Many views", _arrow(), "9 ★★★"),
         ("Image warping", _pixels(), "10 ★★"),
         ("Your own camera", _telephone(), "11 ★★  12 ★★★", "G ★★★"),
-        ("Two pictures", _diamond(), "13 ★★"),
+        ("Two pictures", _diamond(), "13 ★★  14 ★★"),
     )  # fmt: skip
     named = (f"{name}: {', '.join('  '.join(tasks).split('  '))}." for name, _, *tasks in tiles)
     return _sheet(tiles, 5, f"Ten cards. {' '.join(named)}", 18)

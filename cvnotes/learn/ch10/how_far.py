@@ -76,7 +76,7 @@ EXERCISE = Exercise(
     task="Look at stereo_pictures(), a left and a right picture by two cameras side by side: both "
     "have α = 640 pixels and look the same way, and the right one stands 800 mm to the right. How "
     "many millimetres away is the nearest upright edge of the red block? To within 6 % is good "
-    "enough, which is three pixels.",
+    "enough.",
     stub="my_how_far = ...  # mm",
     hints=(
         "It is the edge at which the light and the dark side of the red block meet.",
