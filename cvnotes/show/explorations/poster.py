@@ -39,7 +39,7 @@ def poster_model() -> Model:
         ),
         Setting("small", "small, too", 0, 1, 1, 0, "40 px high, and not 240 px alone"),
         Setting(
-            "blur", "each pixel blurs as much as it shrinks", 0, 1, 1, 0,
+            "blur", "each blurs as much as it shrinks", 0, 1, 1, 0,
             "it asks all over its own square, and takes the mean",
         ),
     )  # fmt: skip
@@ -123,84 +123,60 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     four = np.array([[values[f"u{i}"], values[f"v{i}"]] for i in range(1, 5)])
     left = paper.picture_panel(_SHOWN, _SIZE, "the photograph: pull the corners of the print")
     left.image(_shown(paper.sharpness))
-    ratio, guess, blur = wide_by_high(four), int(values["guess"]), bool(values["blur"])
-    by_A = round(min(max(_HIGH * ratio, 2 * _SHRINK), _WIDEST))
-    if values["small"]:
-        dots = asked(four, _few(by_A))[:, [_few(by_A) // 8, -_few(by_A) // 8]]
-        right, sentence = _sizes(paper, four, by_A, blur), _apart(dots, blur)
-    else:
-        right, sentence = _suns(paper, four, (guess, by_A), 1 + blur)
-        sentence = sentence.format(guess=guess, ratio=ratio)
     left.line(four[[0, 1, 2, 3, 0]], ESTIMATED, 2)
+    ratio, guess, blur = wide_by_high(four), int(values["guess"]), bool(values["blur"])
+    by_A = round(min(max(_HIGH * ratio, 1), _WIDEST))
+    title = f"straight on, {guess} px wide: a guess, pull its edge"
+    above, above_sun = _hung(paper, straight_on(four, guess), title)
     if values["small"]:
+        few, high, asks = round(guess / _SHRINK), _HIGH // _SHRINK, _SHRINK if blur else 1
+        how = "each blurs as much as it shrinks" if blur else "each asks once"
+        small = straight_on(four, few, high, asks).repeat(_SHRINK, axis=0).repeat(_SHRINK, axis=1)
+        below, _ = _hung(paper, small, f"{few} × {high} pixels: {how}")
+        dots = asked(four, few)[:, [few // 8, -few // 8]]
         left.polygons(dots.reshape(-1, 1, 2) + 3 * (_SQUARE - 0.5), ESTIMATED)
+        sentence = _apart(dots, asks)
+    else:
+        poster = straight_on(four, by_A, asks=1 + blur)
+        below, below_sun = _hung(paper, poster, f"straight on, {by_A} px wide: by A")
+        sentence = (
+            f"Of the guessed width, {guess} px, the sun is {above_sun}. By A what the corners "
+            f"frame is {ratio:.2f} times as wide as high, and the sun is {below_sun}."
+        )
     left.mark(four, "estimated", 6)
     for i, at in enumerate(four, start=1):
         left.grip(f"corner {i}", f"corner {i}, {_NAMES[i - 1]}", at, 1)
         aside = at + 30 * np.sign(at - four.mean(axis=0))
         left.text(aside, f"{i}", ESTIMATED, anchor="mm", size=14)
-    return Drawing(paper.join((left, right)), sentence)
-
-
-def _suns(paper: Paper, four: Array, widths: tuple[int, int], asks: int) -> tuple[list[Panel], str]:
-    """Draw the poster of two widths, a circle about each sun; and say how large these are."""
-    guess, by_A = widths
-    titles = f"{guess} px wide: a guess, pull its edge", f"{by_A} px wide: by A"
-    panels, suns = [], []
-    for wide, title in zip(widths, titles, strict=True):
-        poster = straight_on(four, wide, asks=asks)
-        panels.append(_hung(paper, poster, f"straight on, {title}"))
-        begin, end = sun(poster)
-        across, down = end - begin + 1
-        if not np.isfinite(across):
-            suns.append("not to be seen")
-        elif begin.min() == 0 or (end == [wide - 1, _HIGH - 1]).any():
-            suns.append("cut by the frame")
-        else:
-            panels[-1].line((begin + end) / 2 + down / 2 * circle(61), IDEAL, 1.3, dash=3)
-            suns.append(f"{across:.0f} px wide and {down:.0f} px high")
     edge = [guess - 0.5, _HIGH / 2]
-    panels[0].line([[edge[0], -0.5], [edge[0], _HIGH - 0.5]], ESTIMATED, 2.5)
-    panels[0].mark(edge, "estimated", 6)
-    panels[0].grip("width", "the right edge, whose place is guessed", edge, 8)
-    return panels, (
-        f"Of the guessed width, {{guess}} px, the sun is {suns[0]}. By A what the corners "
-        f"frame is {{ratio:.2f}} times as wide as high, and the sun is {suns[1]}."
-    )
+    above.line([[edge[0], -0.5], [edge[0], _HIGH - 0.5]], ESTIMATED, 2.5)
+    above.mark(edge, "estimated", 6)
+    above.grip("width", "the right edge, whose place is guessed", edge, 8)
+    return Drawing(paper.join((left, [above, below])), sentence)
 
 
-def _sizes(paper: Paper, four: Array, wide: int, blur: bool) -> list[Panel]:
-    """Draw the poster large and, enlarged without any mixing, small."""
-    few, high = _few(wide), _HIGH // _SHRINK
-    asks = _SHRINK if blur else 1
-    small = straight_on(four, few, high, asks).repeat(_SHRINK, axis=0).repeat(_SHRINK, axis=1)
-    how = "each blurs as much as it shrinks" if blur else "each asks once"
-    return [
-        _hung(paper, straight_on(four, wide), f"straight on, {wide} × {_HIGH} pixels"),
-        _hung(paper, small, f"{few} × {high} pixels: {how}"),
-    ]
-
-
-def _few(wide: int) -> int:
-    """Return how many pixels wide the small poster is."""
-    return round(wide / _SHRINK)
-
-
-def _apart(dots: Array, blur: bool) -> str:
-    """Say how far apart the pixels of the first and the last column (v, 2, 2) ask."""
+def _apart(dots: Array, asks: int) -> str:
+    """Say how far apart the pixels of two columns (v, 2, 2) ask, and how often."""
     far = np.linalg.norm(dots[-1] - dots[0], axis=-1) / (len(dots) - 1)
-    how = f"{_SHRINK**2} times, all over its own square, and takes the mean" if blur else "once"
+    how = f"{asks**2} times, all over its own square, and takes the mean" if asks > 1 else "once"
     return (
-        f"Along a column the small picture's pixels are {far[0]:.1f} px of the photograph apart "
-        f"on the left (dots) and {far[1]:.1f} px on the right. Each asks {how}."
+        f"Along a column the pixels of the small picture ask {far[0]:.1f} px apart on the left "
+        f"(dots) and {far[1]:.1f} px on the right. Each asks {how}."
     )
 
 
-def _hung(paper: Paper, poster: Drawn, title: str) -> Panel:
-    """Draw a poster in its place."""
-    (low, high), (down, across) = np.rint(np.array(_PLACE)).astype(int).tolist(), poster.shape[:2]
+def _hung(paper: Paper, poster: Drawn, title: str) -> tuple[Panel, str]:
+    """Draw the poster straight on, a circle about its sun; and say how large that is."""
+    (low, high), (tall, wide) = np.rint(np.array(_PLACE)).astype(int).tolist(), poster.shape[:2]
     panel = paper.panel(_PANEL, *_PLACE, title)
     sheet = np.full((high[1] - high[0], low[1] - low[0], 3), 255, np.uint8)
-    sheet[-high[0] :, -low[0] :][:down, :across] = poster
+    sheet[-high[0] :, -low[0] :][:tall, :wide] = poster
     panel.image(sheet)
-    return panel
+    begin, end = sun(poster)
+    across, down = end - begin + 1
+    if not np.isfinite(across):
+        return panel, "not to be seen"
+    if begin.min() == 0 or (end == [wide - 1, _HIGH - 1]).any():
+        return panel, "cut by the frame"
+    panel.line((begin + end) / 2 + down / 2 * circle(61), IDEAL, 1.3, dash=3)
+    return panel, f"{across:.0f} px wide and {down:.0f} px high"
