@@ -5039,6 +5039,23 @@ def test_the_corners_of_the_print_stop_before_its_sun_and_a_frame_that_cuts_it_i
         assert model.drawing(**pulled).sentence.endswith("and the sun is cut by the frame.")
 
 
+@pytest.mark.parametrize("pulled", [{}, {"v4": 379}, {"u1": 180, "v2": 170}])
+def test_a_small_print_has_false_lines_until_each_pixel_blurs_as_much_as_it_shrinks(pulled):
+    draw = MODELS["poster"].drawing
+    sky = []
+    for blur in (0, 1):
+        drawing = draw(guess=519, small=1, blur=blur, **pulled)
+        panel = drawing.picture[2 * TITLE + 151 + 6 :, MARGIN + 446 :]
+        sky.append(panel[14:80, 20:100].std(axis=0).mean())
+    assert sky[0] > 20 > 6 > sky[1]
+    four = np.array([[170.0, 70], [415, 156], [414, 305], [172, 389]])
+    at = poster.asked(four, 86)
+    assert at.shape == (40, 86, 2)
+    far = [np.hypot(*(at[-1, u] - at[0, u])) / 39 for u in (10, 75)]
+    said = draw(guess=519, small=1).sentence
+    assert numbers(said) == pytest.approx(far, abs=0.051)
+
+
 def test_a_board_in_the_air_is_what_both_photographs_say_and_its_rows_are_measured(monkeypatch):
     marked, mark = [], Panel.mark
     monkeypatch.setattr(

@@ -45,6 +45,7 @@ ROWS = (
 )
 SIZE = (420.0, 594.0)  # A2
 SWITCH = (-330.0, 470.0)  # its middle, in the chart's frame, mm
+_LINE = 1200 / 90  # mm: how high a line of the print's sky is, and a gap
 _INK, _PAPER = (0.07, 0.09, 0.16), (1.0, 0.99, 0.95)
 
 
@@ -98,8 +99,9 @@ def chart() -> Scene:
 def poster_room() -> Scene:
     """Build the room with a print on the white sheet of its left wall: a red sun over the sea.
 
-    The sheet is 2600 mm wide and 1200 mm high, the sun is a disc of 600 mm. The first 4 vertices
-    are the corners of the sheet, as seen from the room from the upper left one to the right.
+    The sheet is 2600 mm wide and 1200 mm high, the sun is a disc of 600 mm, and its sky has 34
+    lines: 45 would fill the sheet's height. The first 4 vertices are the corners of the sheet, as
+    seen from the room from the upper left one to the right.
 
     Examples
     --------
@@ -113,7 +115,10 @@ def poster_room() -> Scene:
     first = np.arange(1, 120, 2)
     fan = np.stack([0 * first, first, first + 1, first + 2], axis=1)
     sun = quads(np.vstack([[[-2977.5, -420, 7600]], rim]), fan, (0.83, 0.24, 0.16))
-    parts = [sun, room()]
+    tops = -900 + _LINE * (np.arange(1, 69, 2)[:, None] + np.array([0.0, 0, 1, 1]))
+    loops = np.stack([np.full((34, 4), -2978.0), tops, 0 * tops + [6300, 8900, 8900, 6300]], axis=2)
+    sky = quads(loops.reshape(-1, 3), np.arange(136).reshape(-1, 4), (0.50, 0.63, 0.72))
+    parts = [sky, sun, room()]
     for x, top, colour in ((-2978.0, 20.0, (0.16, 0.36, 0.55)), (-2979.0, -900.0, _PAPER)):
         corners = [[x, top, 6300], [x, top, 8900], [x, 300, 8900], [x, 300, 6300]]
         parts.insert(0, quads(corners, [[0, 1, 2, 3]], colour))

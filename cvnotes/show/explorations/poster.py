@@ -1,4 +1,4 @@
-"""Explore a poster seen straight on: of a width that is guessed, and of the one that A gives."""
+"""Explore a poster seen straight on: of a guessed width, of the one that A gives, and small."""
 
 from functools import lru_cache
 
@@ -14,11 +14,12 @@ from cvnotes.show.explorations.model import Drag, Drawing, Model, Setting, Value
 from cvnotes.show.explorations.paper import Drawn, Panel, Paper
 from cvnotes.show.explorations.strokes import circle
 from cvnotes.show.style import ESTIMATED, IDEAL
-from cvnotes.warping import backward_warp, homography_map
+from cvnotes.warping import backward_warp, homography_map, map_array
 
 _SIZE, _SHOWN = (640, 480), (440, 330)
 _HIGH, _WIDEST = 240, 640  # px: how high a straightened poster is, and how wide at most
 _LOWEST = 120
+_SHRINK = 6  # so many times smaller is the small one: 40 px high
 _PLACE, _PANEL = ((-20.0, 660.0), (-12.0, 252.0)), (391, 151)  # of each poster; px of the page
 _READ = np.array([[170.0, 70], [415, 156], [414, 305], [172, 389]])  # corners, to whole pixels
 _SQUARE = np.array([[0.0, 0], [1, 0], [1, 1], [0, 1]])
@@ -36,10 +37,15 @@ def poster_model() -> Model:
             for i, name in enumerate(_NAMES, start=1)
             for axis, start, low, high in zip("uv", _READ[i - 1].tolist(), *_limits(i), strict=True)
         ),
-    )
+        Setting("small", "small, too", 0, 1, 1, 0, "40 px high, and not 240 px alone"),
+        Setting(
+            "blur", "each blurs as much as it shrinks", 0, 1, 1, 0,
+            "it asks all over its own square, and takes the mean",
+        ),
+    )  # fmt: skip
     about = (
         "A print on a wall at a slant, with its four corners marked; beside it the same straight "
-        "on, once of a width that is guessed, and once of the width that the camera's A gives."
+        "on: of a guessed width and of the one that the camera's A gives, or large and small."
     )
 
     def corner(i: int) -> Drag:
@@ -86,11 +92,23 @@ def wide_by_high(four: Array) -> float:
     return float(np.linalg.norm(h1) / np.linalg.norm(h2))
 
 
-def straight_on(four: Array, wide: int) -> Drawn:
-    """Return the poster with these corners (4, 2), straight on and so many pixels wide."""
-    size = (wide, _HIGH)
+def straight_on(four: Array, wide: int, high: int = _HIGH, asks: int = 1) -> Drawn:
+    """Return the poster with these corners (4, 2), straight on and so many pixels wide.
+
+    Each pixel asks so many times across and down, all over its own square, and takes the mean.
+    """
+    size = (asks * wide, asks * high)
     H = dlt(_SQUARE * size - 0.5, four)
-    return np.asarray(backward_warp(photograph(), homography_map(H), size=size), np.uint8)
+    many = backward_warp(photograph(), homography_map(H), size=size)
+    if asks > 1:
+        many = np.rint(many.reshape(high, asks, wide, asks, 3).mean(axis=(1, 3)))
+    return np.asarray(many, np.uint8)
+
+
+def asked(four: Array, wide: int) -> Array:
+    """Return where the pixels of the small poster ask (v, u, 2)."""
+    size = (wide, _HIGH // _SHRINK)
+    return map_array(homography_map(dlt(_SQUARE * size - 0.5, four)), size)
 
 
 def sun(poster: Drawn) -> Array:
@@ -106,32 +124,53 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     left = paper.picture_panel(_SHOWN, _SIZE, "the photograph: pull the corners of the print")
     left.image(_shown(paper.sharpness))
     left.line(four[[0, 1, 2, 3, 0]], ESTIMATED, 2)
+    ratio, guess, blur = wide_by_high(four), int(values["guess"]), bool(values["blur"])
+    by_A = round(min(max(_HIGH * ratio, 1), _WIDEST))
+    title = f"straight on, {guess} px wide: a guess, pull its edge"
+    above, above_sun = _hung(paper, straight_on(four, guess), title)
+    if values["small"]:
+        few, high, asks = round(guess / _SHRINK), _HIGH // _SHRINK, _SHRINK if blur else 1
+        how = "each blurs as much as it shrinks" if blur else "each asks once"
+        small = straight_on(four, few, high, asks).repeat(_SHRINK, axis=0).repeat(_SHRINK, axis=1)
+        below, _ = _hung(paper, small, f"{few} × {high} pixels: {how}")
+        dots = asked(four, few)[:, [few // 8, -few // 8]]
+        left.polygons(dots.reshape(-1, 1, 2) + 3 * (_SQUARE - 0.5), ESTIMATED)
+        sentence = _apart(dots, asks)
+    else:
+        poster = straight_on(four, by_A, asks=1 + blur)
+        below, below_sun = _hung(paper, poster, f"straight on, {by_A} px wide: by A")
+        sentence = (
+            f"Of the guessed width, {guess} px, the sun is {above_sun}. By A what the corners "
+            f"frame is {ratio:.2f} times as wide as high, and the sun is {below_sun}."
+        )
     left.mark(four, "estimated", 6)
     for i, at in enumerate(four, start=1):
         left.grip(f"corner {i}", f"corner {i}, {_NAMES[i - 1]}", at, 1)
         aside = at + 30 * np.sign(at - four.mean(axis=0))
         left.text(aside, f"{i}", ESTIMATED, anchor="mm", size=14)
-    ratio, guess = wide_by_high(four), int(values["guess"])
-    by_A = round(min(max(_HIGH * ratio, 1), _WIDEST))
-    above = _straight(paper, four, guess, f"straight on, {guess} px wide: a guess, pull its edge")
-    below = _straight(paper, four, by_A, f"straight on, {by_A} px wide: by A")
     edge = [guess - 0.5, _HIGH / 2]
-    above[0].line([[edge[0], -0.5], [edge[0], _HIGH - 0.5]], ESTIMATED, 2.5)
-    above[0].mark(edge, "estimated", 6)
-    above[0].grip("width", "the right edge, whose place is guessed", edge, 8)
-    sentence = (
-        f"Of the guessed width, {guess} px, the sun is {above[1]}. By A what the corners "
-        f"frame is {ratio:.2f} times as wide as high, and the sun is {below[1]}."
+    above.line([[edge[0], -0.5], [edge[0], _HIGH - 0.5]], ESTIMATED, 2.5)
+    above.mark(edge, "estimated", 6)
+    above.grip("width", "the right edge, whose place is guessed", edge, 8)
+    return Drawing(paper.join((left, [above, below])), sentence)
+
+
+def _apart(dots: Array, asks: int) -> str:
+    """Say how far apart the pixels of two columns (v, 2, 2) ask, and how often."""
+    far = np.linalg.norm(dots[-1] - dots[0], axis=-1) / (len(dots) - 1)
+    how = f"{asks**2} times, all over its own square, and takes the mean" if asks > 1 else "once"
+    return (
+        f"Along a column the pixels of the small picture ask {far[0]:.1f} px apart on the left "
+        f"(dots) and {far[1]:.1f} px on the right. Each asks {how}."
     )
-    return Drawing(paper.join((left, [above[0], below[0]])), sentence)
 
 
-def _straight(paper: Paper, four: Array, wide: int, title: str) -> tuple[Panel, str]:
+def _hung(paper: Paper, poster: Drawn, title: str) -> tuple[Panel, str]:
     """Draw the poster straight on, a circle about its sun; and say how large that is."""
-    (low, high), poster = np.rint(np.array(_PLACE)).astype(int).tolist(), straight_on(four, wide)
+    (low, high), (tall, wide) = np.rint(np.array(_PLACE)).astype(int).tolist(), poster.shape[:2]
     panel = paper.panel(_PANEL, *_PLACE, title)
     sheet = np.full((high[1] - high[0], low[1] - low[0], 3), 255, np.uint8)
-    sheet[-high[0] :, -low[0] :][:_HIGH, :wide] = poster
+    sheet[-high[0] :, -low[0] :][:tall, :wide] = poster
     panel.image(sheet)
     begin, end = sun(poster)
     across, down = end - begin + 1
