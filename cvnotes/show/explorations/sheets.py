@@ -88,7 +88,7 @@ def sheets_model() -> Model:
     said = "how much of the right camera's sheet the left camera is given"
     amount = Setting("amount", "right camera's sheet ×", 0, _MOST, 0.05, 1, said)
     said = "along which axes corners may leave their places: within the sheet, or up and down"
-    part = Setting("part", "of it", 1, 3, 1, 1, said, names=tuple(_PARTS))
+    part = Setting("part", "use", 1, 3, 1, 1, said, names=tuple(_PARTS))
     about = (
         "A printed sheet in space, its faults drawn a hundred times as large: blue as the left "
         "camera of a real pair finds it, orange so much of what the right one finds; and the RMS "
