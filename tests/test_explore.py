@@ -130,6 +130,7 @@ from cvnotes.show.explorations.subpixel import neighbourhood
 from cvnotes.show.explorations.swing import nets, weights
 from cvnotes.show.explorations.triangle import camera_of
 from cvnotes.show.explorations.votes import slopes, window_at
+from cvnotes.show.explorations.whose import CULPRITS, Suspects, wave
 from cvnotes.show.style import MUTED, mixed
 from cvnotes.show.typeface import font_file
 from cvnotes.stereo import calibrate_stereo, triangulate
@@ -796,6 +797,39 @@ def test_the_orange_sheet_is_the_blue_one_once_and_the_bar_is_the_left_cameras(b
     blue, orange = (coloured[:, at + 3 : at + 330] for at in (MARGIN, MARGIN + 346))
     alike = (blue & orange).sum() / (blue | orange).sum()
     assert (alike > 0.7) == (amount == 1), alike
+
+
+def test_a_bad_lens_tells_another_sheet_at_every_turn_and_a_bad_board_the_same():
+    suspects = Suspects()
+    assert np.allclose(suspects.pixels(90)[0], (319.5 + 75 * 1.55, 239.5 - 120 * 1.55))
+    for culprit in CULPRITS:  # what is left of a fault shifts, turns and stretches nothing
+        W = np.column_stack([suspects.corners, np.ones(54)])
+        left = suspects.shifts(culprit, 130)
+        assert np.abs(np.linalg.lstsq(W, left)[0]).max() < 1e-9
+    for turn in (0, 30, 90, 180):
+        assert np.allclose(suspects.agreement("the board", turn), 1, rtol=0, atol=1e-6)
+    assert all(abs(suspects.agreement("a lens", turn)).max() < 0.25 for turn in range(45, 181, 5))
+    assert (suspects.agreement("a lens", 10) > 0.6).all()
+    # The lens does the same to a pixel whatever lies there; by hand, at the first corner.
+    u, v = suspects.pixels(60)[0] - (319.5, 239.5)
+    by_hand = 0.2 * np.sin([-0.008 * u - 0.023 * v + np.pi / 4, 0.007 * u + 0.02 * v + np.pi / 4])
+    assert np.allclose(wave(suspects.pixels(60)[0]), by_hand)
+    said = MODELS["whose"].drawing(turn=90, culprit=1).sentence
+    along = [float(x) for x in re.findall(r"(-?0\.\d+) along", said.replace("−", "-"))]
+    assert np.allclose(along, suspects.agreement("a lens", 90), atol=0.006)
+
+
+@pytest.mark.parametrize("culprit", [1, 2])
+def test_the_orange_sheet_follows_the_board_only_if_the_lens_is_bad(culprit):
+    one, other = (
+        MODELS["whose"].drawing(turn=turn, culprit=culprit).picture[:, -320:].astype(int)
+        for turn in (0, 90)
+    )
+    half = len(one) // 2
+    changed = [(np.abs(a - b).max(axis=-1) > 60).mean() for a, b in
+               ((one[:half], other[:half]), (one[half:], other[half:]))]  # fmt: skip
+    assert changed[0] == 0  # the upright picture's
+    assert (changed[1] > 0.1) == (culprit == 1)
 
 
 def test_a_window_on_a_ramp_votes_along_it_and_one_on_a_corner_for_the_corner():
@@ -3898,6 +3932,7 @@ FREE_TO_MOVE = {
     "straighten": {"k1": -0.1},
     "folds": {"k1": -0.15},
     "sheets": {"amount": 1},
+    "whose": {"turn": 20},
     "ransac": {"draw": 20},
     "decentred": {"down": 0.08},
     "rings": {"place": 50},
@@ -3985,6 +4020,7 @@ ON_A_CURVE = {  # its nearest place
     ("origin", "hinge"),
     ("parallel", "ray"),
     ("thirteen", "dot"),
+    ("whose", "corner"),
     *(("meet", end) for end in ("a1", "b1", "a2", "b2")),
 }
 FROM_ONE_TO_ONE = {("clouds", "picture"): 4}  # from picture to picture; the last

@@ -27,12 +27,12 @@ _STORIES = (
     "straighten", "stands", "ring", "maps", "ruler", "eye", "rod", "shadows", "forged",
     "triangle", "formation", "pinhole", "dolly", "walks", "gimbal", "fisheye", "clouds",
     "subpixel", "votes", "twins", "ellipse", "ransac", "homography", "fold", "folds", "finding",
-    "moved", "eleventh", "sheets", "between", "rings", "plane", "epipolar", "rectification",
-    "disparity", "depth", "cube", "conic", "seam", "swing", "frame", "meet", "residuals",
-    "hinge", "horizon", "nails", "origin", "similar", "clicks", "zoom", "rim", "decentred",
-    "rail", "protractor", "asks", "glass", "stop", "rodrigues", "push", "wishes", "bowl", "rows",
-    "entries", "parabola", "six", "parallel", "warp", "poster", "thirteen", "imitation",
-    "uphill",
+    "moved", "eleventh", "sheets", "whose", "between", "rings", "plane", "epipolar",
+    "rectification", "disparity", "depth", "cube", "conic", "seam", "swing", "frame", "meet",
+    "residuals", "hinge", "horizon", "nails", "origin", "similar", "clicks", "zoom", "rim",
+    "decentred", "rail", "protractor", "asks", "glass", "stop", "rodrigues", "push", "wishes",
+    "bowl", "rows", "entries", "parabola", "six", "parallel", "warp", "poster", "thirteen",
+    "imitation", "uphill",
 )  # fmt: skip
 __all__ = ["NAMES", "pull_points", "explore", "model"]
 NAMES = (*_MODELS, *_STORIES)
