@@ -16,6 +16,7 @@ pytestmark = [pytest.mark.slow, pytest.mark.once]
 
 ROOT = Path(__file__).resolve().parents[1]
 VIEWS = sorted((ROOT / "data" / "views").glob("*.png"))
+OTHERS = '.explore:not([aria-label="Exploration: homography"])'
 SHOWN = """() => {
     const canvas = document.querySelector('.explore canvas');
     if (canvas.hidden) return 0;
@@ -127,7 +128,7 @@ def chapter(browser, live_site):
     browser.open(f"{live_site}/notebooks/06_homography_dlt.html")
     browser.wait("() => document.readyState === 'complete' && !!document.querySelector('.explore')")
     # Its first exploration, the one that is tried, is that of a homography.
-    browser.run("() => [...document.querySelectorAll('.explore')].slice(1).map(x => x.remove())")
+    browser.run(f"() => document.querySelectorAll('{OTHERS}').forEach(x => x.remove())")
 
 
 @pytest.fixture

@@ -32,7 +32,7 @@ PARTS = {
     "06_homography_dlt": ("homography", {"u": 0.0, "v": 0.0}, (20, 42, 346)),
     "07_zhang_calibration": ("nails", {}, (6, 44, 500)),
     "10_two_pictures": ("rectification", {}, (256, 26, 432)),
-    "11_the_board_we_believed": ("sheets", {"amount": 1.0}, (366, 33, 308)),
+    "11_board_we_believed": ("sheets", {"amount": 1.0}, (366, 33, 308)),
 }
 _ROW = re.compile(r"^\| (\S+) \| \[(.+?)\]\(notebooks/(\w+)\.ipynb\) \| (.+?) \|$", re.M)
 _PART = re.compile(r"^\|(\w+)\|\[.+?\]\((\w+)\.ipynb\)\|.+\|(\S+)\|$", re.M)
