@@ -127,7 +127,7 @@ def chapter(browser, live_site):
     """Open chapter 6, on which Python is woken once, by the first who asks."""
     browser.open(f"{live_site}/notebooks/06_homography_dlt.html")
     browser.wait("() => document.readyState === 'complete' && !!document.querySelector('.explore')")
-    # Its first exploration, the one that is tried, is that of a homography.
+    # One exploration is tried; the others would only be drawn meanwhile.
     browser.run(f"() => document.querySelectorAll('{OTHERS}').forEach(x => x.remove())")
 
 
