@@ -114,9 +114,7 @@ def _draw(suspects: Suspects, paper: Paper, values: Values) -> Drawing:
         f"{r:.2f} along {axis}".replace("-", "−")
         for axis, r in zip("XY", suspects.agreement(culprit, turn), strict=True)
     )
-    said = (
-        f"The board is turned by {turn:g}°. What both pictures say of it is correlated by {alike}."
-    )
+    said = f"Turned by {turn:g}°, this picture's sheet is correlated with the upright one's by {alike}."
     return Drawing(paper.join((photo, column)), said)
 
 
