@@ -114,7 +114,7 @@ def _draw(suspects: Suspects, paper: Paper, values: Values) -> Drawing:
         f"{r:.2f} along {axis}".replace("-", "−")
         for axis, r in zip("XY", suspects.agreement(culprit, turn), strict=True)
     )
-    said = f"Turned by {turn:g}°, this picture's sheet is correlated with the upright one's by {alike}."
+    said = f"Turned by {turn:g}°, this sheet is correlated with the upright picture's by {alike}."
     return Drawing(paper.join((photo, column)), said)
 
 
