@@ -4611,6 +4611,21 @@ def test_the_charts_edges_meet_where_the_columns_of_the_nine_entries_say(given):
     assert count(drawing.picture[v - 1 : v + 2, u - 1 : u + 2], "#D5DADB", 9) == 0
 
 
+@pytest.mark.parametrize(
+    ("k", "corner"),  # where the entry puts a corner of the square of side 1, by hand
+    [(2, (0.6, 1)), (3, (0.4, 0)), (4, (1, 0.45)), (6, (0, 0.4)), (7, (1 / 1.9, 0)),
+     (8, (0, 1 / 1.9))],
+)  # fmt: skip
+def test_the_net_of_an_entry_shows_what_this_entry_does(k, corner):
+    picture = MODELS["entries"].picture()
+    row, column = divmod(k - 1, 3)
+    left = MARGIN + 430 + 6  # of the panel with the nets
+    at = [left + 106 * column + 27, TITLE + 114 * row + 24] + 42 * np.array(corner)
+    u, v = np.rint(at).astype(int)
+    ink = (ESTIMATED, LENS, WORLD)[column]
+    assert count(picture[v - 2 : v + 3, u - 2 : u + 3], ink, 90) > 3
+
+
 @pytest.mark.parametrize("draw", [0, 12, 44])
 def test_each_wrong_pair_has_a_diamond_and_no_right_one_has(draw):
     true = Camera(course.camera().A, course.poses()[6]).project(course.board().points)

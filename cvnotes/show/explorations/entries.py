@@ -27,7 +27,7 @@ def entries_model() -> Model:
     start = np.eye(3)
     start[2, 0] = 0.8
     settings = tuple(
-        Setting(f"h{k}", f"h{k}", low, top, 0.02, value, f"row {k // 3.1 + 1:.0f} of H")
+        Setting(f"h{k}", f"h{k}", low, top, 0.02, value, f"row {(k - 1) // 3 + 1} of H")
         for k, (low, top, value) in enumerate(
             zip(*(M.ravel().tolist() for M in (_LOW, _TOP, start)), strict=True), start=1
         )

@@ -32,7 +32,7 @@ def uphill_model() -> Model:
 
 
 def _shown(r: float) -> float:
-    return r + _K1 * r**3
+    return float(seen_radius(_LENS, np.asarray(r)))
 
 
 def _divided(r: float, seen: float) -> float:
