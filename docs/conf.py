@@ -13,6 +13,7 @@ import cvnotes
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tools"))
 from front_page import ROOT, sentence
+from reminders import remind
 
 project = "cvnotes"
 author = "The cvnotes authors"
@@ -212,6 +213,7 @@ def setup(app: Any) -> None:
     """Have Sphinx call us before numpydoc, and when a page is read or written."""
     app.connect("autodoc-process-docstring", escape_initials, priority=100)
     app.connect("doctree-read", name_exercises)
+    app.connect("doctree-resolved", remind)
     app.connect("html-page-context", describe)
     app.connect("html-page-context", name_chapters)
     app.connect("html-page-context", share_contents)

@@ -73,6 +73,7 @@ from cvnotes.show.explorations import (
     epipolar,
     folds,
     formation,
+    forty,
     frame,
     gimbal,
     hinge,
@@ -94,7 +95,7 @@ from cvnotes.show.explorations import (
 )
 from cvnotes.show.explorations import depth as swept
 from cvnotes.show.explorations.boards import on_sheet as from_afar
-from cvnotes.show.explorations.boards import pinhole
+from cvnotes.show.explorations.boards import pinhole, squares_between
 from cvnotes.show.explorations.depth import pair
 from cvnotes.show.explorations.disparity import columns, triangulated
 from cvnotes.show.explorations.epipolar import cameras, seen_by_the_second
@@ -131,6 +132,7 @@ from cvnotes.show.explorations.swing import nets, weights
 from cvnotes.show.explorations.triangle import camera_of
 from cvnotes.show.explorations.votes import slopes, window_at
 from cvnotes.show.explorations.whose import CULPRITS, Suspects, wave
+from cvnotes.show.space.shapes import target_shapes
 from cvnotes.show.style import MUTED, mixed
 from cvnotes.show.typeface import font_file
 from cvnotes.stereo import calibrate_stereo, triangulate
@@ -226,9 +228,9 @@ def test_all_sliders_may_stand_at_their_ends_in_every_combination(name):
 
 @pytest.mark.once
 @each_model
-def test_thirty_random_settings_each_give_a_picture_of_the_same_size(name):
+def test_a_dozen_random_settings_each_give_a_picture_of_the_same_size(name):
     rng = np.random.default_rng(7)
-    shapes = {check_sight(name, random_values(MODELS[name], rng)).picture.shape for _ in range(30)}
+    shapes = {check_sight(name, random_values(MODELS[name], rng)).picture.shape for _ in range(12)}
     assert shapes == {MODELS[name].picture().shape}
 
 
@@ -414,9 +416,9 @@ def test_the_small_picture_lies_on_the_rays_and_T_is_walked_in_the_cameras_own_s
 ):
     lines, line = [], Panel.line
 
-    def kept(panel, xy, colour, width=1.5, dash=0):
+    def kept(panel, xy, colour, width=1.5, dash=0, rim=0):
         lines.append((np.array(xy), dash))
-        line(panel, xy, colour, width, dash)
+        line(panel, xy, colour, width, dash, rim)
 
     monkeypatch.setattr(Panel, "line", kept)
     board = course.board()
@@ -451,7 +453,7 @@ def test_the_small_picture_lies_on_the_rays_and_T_is_walked_in_the_cameras_own_s
         assert np.mean(grey[dark & bare] < 138) > 0.9 < np.mean(grey[~dark & bare] > 138), values
         panel, at = written["T"]
         assert np.linalg.norm(at - from_afar(C + R.T @ T / 2)) < 12 * panel.pixel
-        words = ", ".join(f"{step:.0f}" for step in T).replace("-", "−")
+        words = ", ".join(f"{step:.0f}" for step in T)
         assert panel.title == f"space, T = ({words}) mm: pull the camera"
         (steps,) = (xy for xy, dash in lines if dash == 5)
         corners = [np.zeros(3), *np.cumsum(np.diag(T), axis=0)]
@@ -802,24 +804,31 @@ def test_the_orange_sheet_is_the_blue_one_once_and_the_bar_is_the_left_cameras(b
 def test_a_bad_lens_tells_another_sheet_at_every_turn_and_a_bad_board_the_same():
     suspects = Suspects()
     assert np.allclose(suspects.pixels(90)[0], (319.5 + 75 * 1.55, 239.5 - 120 * 1.55))
+    assert np.allclose(suspects.pixels(0, -40)[-1], (279.5 + 120 * 1.55, 239.5 + 75 * 1.55))
     for culprit in CULPRITS:  # what is left of a fault shifts, turns and stretches nothing
         W = np.column_stack([suspects.corners, np.ones(54)])
-        left = suspects.shifts(culprit, 130)
+        left = suspects.shifts(culprit, 130, 30)
         assert np.abs(np.linalg.lstsq(W, left)[0]).max() < 1e-9
     for turn in (0, 30, 90, 180):
-        assert np.allclose(suspects.agreement("the board", turn), 1, rtol=0, atol=1e-6)
+        assert np.allclose(suspects.agreement("the board", turn, 90), 1, rtol=0, atol=1e-6)
+        # Rings are alike all round, so only moving the board betrays them.
+        assert np.allclose(suspects.agreement("a lens, in rings", turn), 1, rtol=0, atol=1e-6)
+        assert suspects.agreement("a lens, in rings", turn, -100).min() < 0.05
     assert all(abs(suspects.agreement("a lens", turn)).max() < 0.25 for turn in range(45, 181, 5))
     assert (suspects.agreement("a lens", 10) > 0.6).all()
     # The lens does the same to a pixel whatever lies there; by hand, at the first corner.
     u, v = suspects.pixels(60)[0] - (319.5, 239.5)
     by_hand = 0.2 * np.sin([-0.008 * u - 0.023 * v + np.pi / 4, 0.007 * u + 0.02 * v + np.pi / 4])
-    assert np.allclose(wave(suspects.pixels(60)[0]), by_hand)
+    assert np.allclose(wave("a lens", suspects.pixels(60)[0]), by_hand)
+    assert np.allclose(
+        wave("a lens, in rings", [349.5, 279.5]), 0.2 * np.sin(50 / 45) * np.array([0.6, 0.8])
+    )
     said = MODELS["whose"].drawing(turn=90, culprit=1).sentence
     along = [float(x) for x in re.findall(r"(-?0\.\d+) along", said.replace("−", "-"))]
     assert np.allclose(along, suspects.agreement("a lens", 90), atol=0.006)
 
 
-@pytest.mark.parametrize("culprit", [1, 2])
+@pytest.mark.parametrize("culprit", [1, 3])
 def test_the_orange_sheet_follows_the_board_only_if_the_lens_is_bad(culprit):
     one, other = (
         MODELS["whose"].drawing(turn=turn, culprit=culprit).picture[:, -320:].astype(int)
@@ -897,6 +906,7 @@ def test_in_the_bowl_the_ellipse_is_what_the_circle_of_the_noise_becomes(far, mo
     monkeypatch.setattr(Panel, "line", kept)
     monkeypatch.setattr(Panel, "arrows", lambda _, *both: arrows.append(both[:2]))
     said = MODELS["bowl"].drawing(far=far, alpha=1.2, T_z=-0.4).sentence
+    in_picture, arrows = np.array(arrows)[:4, 1] / 220, arrows[4:]  # the right corner's, the left's
     (circle,) = [xy for title, xy, _ in curves if title == "→ righ"]
     wide, ellipse, bar = [xy for title, xy, _ in curves if title == "errors"]
     assert np.allclose(np.linalg.norm(circle, axis=1), 0.1, rtol=1e-9)
@@ -908,6 +918,8 @@ def test_in_the_bowl_the_ellipse_is_what_the_circle_of_the_noise_becomes(far, mo
     assert np.allclose(bar, [[-alone, 0], [alone, 0]], rtol=1e-6)
     assert said.endswith(f"α has ± {std:.2f} px, and ± {alone:.2f} px at a known distance.")
     (start, longer), (then, farther) = arrows
+    outs = np.transpose([longer, farther]).ravel() * [1, 1, -1, -1]
+    assert np.allclose(in_picture, np.column_stack([outs, 0 * outs]), rtol=1e-9)
     assert np.allclose([*start, *(then - longer)], 0)
     assert np.allclose(longer, 1.2 * J[:, 0], rtol=1e-5)
     assert np.allclose(farther, -0.4 * J[:, 1], rtol=1e-5)
@@ -958,10 +970,10 @@ def test_the_sum_of_squares_is_least_where_the_votes_cross_and_twice_on_the_firs
 def test_a_stroke_is_the_thicker_the_more_its_square_counts(monkeypatch):
     drawn, line = [], Panel.line
 
-    def noted(panel, xy, colour, width=1.5, dash=0):
+    def noted(panel, xy, colour, width=1.5, dash=0, rim=0):
         if colour == WORLD:
             drawn.append((np.linalg.norm(np.subtract(*xy)), width))
-        line(panel, xy, colour, width, dash)
+        line(panel, xy, colour, width, dash, rim)
 
     monkeypatch.setattr(Panel, "line", noted)
     MODELS["votes"].drawing(m_u=-2, m_v=1)
@@ -1058,7 +1070,7 @@ def test_the_join_on_the_ring_is_dashed_green_and_no_angle_but_that_of_the_line_
 def test_the_marks_of_the_ring_carry_their_numbers_outside_of_it(written):
     MODELS["ring"].drawing(angle=30)
     for number in (1, 2, 4, 8, -1, -2, -4, -8):
-        panel, at = written[f"{number}".replace("-", "−")]
+        panel, at = written[f"{number}"]
         off = at - [0, 0.5]
         assert np.hypot(*off) > 0.5 + 6 * panel.pixel  # the words' middle, beyond the rim
         mark = np.array([number, number**2]) / (number**2 + 1) - [0, 0.5]
@@ -2166,16 +2178,15 @@ def test_the_five_pictures_are_those_of_the_chapter_and_so_are_the_errors():
     seen = render_scene(room_with(course.board(), course.poses()[6]), course.camera(), samples=64)
     assert np.abs(clouds.changed(5) - luma(seen.astype(float))).max() < 1e-9
     for picture, which in ((sharpened, 2), (shaken, 4)):
-        for window in (5, 8):
-            off = refine_subpixel(picture, np.rint(truth), window=window) - truth
-            edges = refine_edges(picture, np.rint(truth), grid=(9, 6), window=window) - truth
-            said = numbers(MODELS["clouds"].drawing(picture=which, window=window).sentence)
-            expected = [np.sqrt(np.mean(np.sum(e**2, axis=1))) for e in (off, edges)]
-            np.testing.assert_allclose(said[-3:-1], expected, atol=6e-4)
-            assert said[-1] == pytest.approx(max(expected) / min(expected), abs=0.06)
-            larger = "blue" if expected[0] > expected[1] else "orange"
-            sentence = MODELS["clouds"].drawing(picture=which, window=window).sentence
-            assert f"the {larger} cloud is" in sentence
+        off = refine_subpixel(picture, np.rint(truth), window=8) - truth
+        edges = refine_edges(picture, np.rint(truth), grid=(9, 6), window=8) - truth
+        sentence = MODELS["clouds"].drawing(picture=which).sentence
+        said = numbers(sentence)
+        expected = [np.sqrt(np.mean(np.sum(e**2, axis=1))) for e in (off, edges)]
+        np.testing.assert_allclose(said[-3:-1], expected, atol=6e-4)
+        assert said[-1] == pytest.approx(max(expected) / min(expected), abs=0.06)
+        larger = "blue" if expected[0] > expected[1] else "orange"
+        assert f"the {larger} cloud is" in sentence
     u, v = np.rint(truth[22]).astype(int)  # what is shown of each is a part of what is measured
     for k, cutout in enumerate(clouds.cutouts(), 1):
         part = clouds.changed(k)[v - 14 : v + 15, u - 14 : u + 15]
@@ -2183,45 +2194,56 @@ def test_the_five_pictures_are_those_of_the_chapter_and_so_are_the_errors():
 
 
 def test_a_ring_is_as_large_as_the_rms_of_a_point():
-    off = refine_subpixel(course.photos()[6], np.rint(course.exact_corners()[6]), window=6)
+    off = refine_subpixel(course.photos()[6], np.rint(course.exact_corners()[6]), window=8)
     far = np.linalg.norm(off - course.exact_corners()[6], axis=1)
     radius = 360 / 0.2 * np.sqrt(np.mean(far**2))
-    drawn = MODELS["clouds"].picture(window=6)
+    drawn = MODELS["clouds"].picture(picture=1)
     middle = np.array([MARGIN + 298, TITLE + 180])
     for a in np.radians([10, 100, 190, 280]):
         u, v = np.rint(middle + radius * np.array([np.cos(a), np.sin(a)])).astype(int)
         assert count(drawn[v - 1 : v + 2, u - 1 : u + 2], LENS, 60) >= 2
 
 
-def test_what_is_dashed_is_how_far_the_noise_alone_moves_a_corner_that_is_known_but_for_its_place():
-    blur, x = np.sqrt(2) * 0.757, np.arange(-8.0, 9.0)
-    edge, steep = [95 * erf(each / blur) for each in x], 190 / np.sqrt(np.pi) / blur
-    slope = clouds._slope(np.array(edge)[:, None])[3:-3, 0]  # at the ends it goes round
-    exact = steep * np.exp(-((x[3:-3] / blur) ** 2))
-    assert np.sum(slope**2) == pytest.approx(np.sum(exact**2), rel=0.06)
+def test_it_is_told_when_errors_lie_outside_of_their_panel(written):
+    for which, words in ((1, []), (3, ["4 of 54 go beyond"])):
+        written.clear()
+        MODELS["clouds"].drawing(picture=which)
+        assert [w for w in written if w.endswith("beyond")] == words
 
+
+def test_forty_noisy_photographs_scatter_by_the_noise_over_the_root_of_the_eigenvalue(written):
     photo, (u, v) = course.photos()[6].astype(float), np.rint(course.exact_corners()[6][22])
-    near = np.s_[int(v) - 8 : int(v) + 9, int(u) - 8 : int(u) + 9]
-    J = np.stack([clouds._slope(photo.T).T[near].ravel(), clouds._slope(photo)[near].ravel()], 1)
-    noise = np.random.default_rng(0).normal(scale=2, size=(289, 2000))
-    moved = np.linalg.lstsq(J, noise, rcond=None)[0]
-    assert clouds.allowed()[5] == pytest.approx(np.sqrt(2 * np.mean(moved**2)), rel=0.04)
+    near = np.s_[int(v) - 22 : int(v) + 11, int(u) - 16 : int(u) + 17]
+    left = photo[near] - forty.quiet()  # the course's own photograph is one of them
+    assert abs(left.mean()) < 0.1
+    assert left.std() == pytest.approx(2, rel=0.05)
+    for up in (0, 9, 10):
+        eigenvalues, axes, places = forty.found(up)
+        written.clear()
+        told = numbers(MODELS["forty"].drawing(up=up, noise=3).sentence)
+        expected = 3 / np.sqrt(eigenvalues)
+        assert [told[2], told[5]] == pytest.approx(expected, abs=6e-5)
+        assert {f"{one:.4f}" for one in expected} <= set(written)  # the ellipse's half axes
+        assert np.std(3 * places @ axes, axis=0) == pytest.approx(expected, rel=0.25)  # of 40
 
-    def dark(which):  # px of the dashed curve, in the middle of the curves
-        drawn = MODELS["clouds"].picture(picture=which)[TITLE + 400 : TITLE + 520, -130:-10]
-        return int((drawn.max(axis=-1) < 60).sum())
 
-    assert dark(1) > dark(4) + 40  # the noise of the other four is another one
+def test_a_pushed_picture_is_found_where_it_was_pushed_to(monkeypatch):
+    pushed = forty.quiet(0.1, 0) - forty.quiet(), forty.quiet(0, 0.2) - forty.quiet()
+    monkeypatch.setattr(forty, "noises", lambda: np.repeat(pushed, forty._PHOTOS // 2, axis=0))
+    for up in (0, 9):
+        _, _, places = forty.found(up)
+        np.testing.assert_allclose(places[0], [0.1, 0], atol=0.02)
+        np.testing.assert_allclose(places[-1], [0, 0.2], atol=0.02)
 
 
-def test_it_is_told_when_errors_lie_outside_of_their_panel():
-    def words(**values):
-        picture = MODELS["clouds"].picture(**values)[TITLE + 334 : TITLE + 356]
-        return int((picture[:, MARGIN + 5 : MARGIN + 150].max(axis=-1) < 60).sum())
-
-    assert words(picture=3, window=3) > 100  # 25 of 54
-    assert words(picture=1, window=4) == 0
-    assert MODELS["clouds"].settings[0].label == "half window (px)"
+def test_squares_between_corners_are_dark_where_those_of_the_printed_board_are():
+    board = Chessboard((9, 6), 25.0)
+    squares, _ = target_shapes(board)
+    printed = {tuple(c.mean(axis=0).round(3)) for c in squares.corners[squares.colours[:, 0] < 0.5]}
+    drawn, dark = squares_between(board.points.reshape(6, 9, 3))
+    middles = drawn.mean(axis=1).round(3)
+    assert [tuple(middle) in printed for middle in middles] == dark.tolist()
+    assert 0 < dark.sum() < len(dark)
 
 
 def test_boards_on_a_hinge_tell_alpha_as_a_calibration_of_their_photograph_finds_it():
@@ -2237,28 +2259,24 @@ def test_boards_on_a_hinge_tell_alpha_as_a_calibration_of_their_photograph_finds
             )
             scatter = result.rms * np.sqrt(84 / (168 - 10))  # px of a coordinate, from residuals
             assert result.std["alpha_u"] * 0.1 / scatter == pytest.approx(told, rel=0.1)
-            u = MARGIN + 526 + 340 * (result.A[0, 0] - 670) / 260
-            v = 2 * TITLE + 252 + 126 * (1.1 - 0.9 + 1.8 * k / 39) / 2.7
+            found = hinge.found()[angle - 90, k]
+            assert found == pytest.approx(result.A[[0, 1], [0, 1]], abs=0.1)
+            u = MARGIN + 526 + 340 * (result.A[0, 0] - 740) / 120
+            v = TITLE + 200 - 340 * (result.A[1, 1] - 804) / 120
             at = np.rint([u, v]).astype(int)
             assert count(drawn[at[1] - 1 : at[1] + 2, at[0] - 1 : at[0] + 2], ESTIMATED, 60) >= 4
-        assert hinge.found()[angle - 90].std() == pytest.approx(told, rel=0.25)
-
-
-def test_the_curve_of_the_hinge_counts_the_angle_that_its_slider_counts(written):
-    MODELS["hinge"].drawing(angle=150)
-    named = [words for words in written if words.endswith("°")]
-    assert named == [f"{angle}°" for angle in (90, 135, 160, 170, 176, 178, 179)]
-    for words in named:
-        held = grip_of(MODELS["hinge"].drawing(angle=int(words[:-1])), "angle").at
-        assert written[words][1][0] == pytest.approx(held[0], abs=0.01)
+        assert hinge.found()[angle - 90, :, 0].std() == pytest.approx(told, rel=0.25)
 
 
 def test_dots_that_leave_the_panel_of_the_hinge_are_counted(written):
     for angle in (120, 179):
-        beyond = int((np.abs(hinge.found()[angle - 90] - 800) > 130).sum())
+        off = np.abs(hinge.found()[angle - 90] - [800, 804]) > [60, 60 * 400 / 340]
+        beyond = int(off.any(axis=1).sum())
         written.clear()
         MODELS["hinge"].drawing(angle=angle)
-        assert [w for w in written if w.endswith("beyond")] == ["9 of 40 go beyond"][:beyond]
+        assert [w for w in written if w.endswith("beyond")] == [f"{beyond} of 40 go beyond"][
+            :beyond
+        ]
 
 
 def test_half_the_bend_is_worth_half_and_none_is_worth_nothing():
@@ -3142,9 +3160,9 @@ def test_a_block_hides_the_lines_of_the_rod_behind_it_and_no_others(monkeypatch)
     """Walk from the camera to each place of a line: does the way lead through a block?"""
     drawn, line = [], Panel.line
 
-    def kept(panel, xy, colour, width=1.5, dash=0):
+    def kept(panel, xy, colour, width=1.5, dash=0, rim=0):
         drawn.append((np.array(xy), width, dash))
-        line(panel, xy, colour, width, dash)
+        line(panel, xy, colour, width, dash, rim)
 
     monkeypatch.setattr(Panel, "line", kept)
     camera = Camera(course.camera().A, look_at([12500, -1200, -2500], [1200, -2300, 12500]))
@@ -3325,14 +3343,21 @@ def test_the_bar_under_the_residuals_is_as_long_as_it_says(k1, monkeypatch):
 
     monkeypatch.setattr(Panel, "text", text)
     monkeypatch.setattr(Panel, "line", line)
-    monkeypatch.setattr(Panel, "arrows", lambda panel, _, by, *__: arrows.append(by / panel.pixel))
-    arrows = []
+    arrows, titles = [], []
+
+    def draw(panel, _, by, *__):
+        arrows.append(by)
+        titles.append(panel.title)
+
+    monkeypatch.setattr(Panel, "arrows", draw)
     drawing = MODELS["residuals"].drawing(k1=k1)
     (length,) = [float(words[:-3]) for words in said if words.endswith(" px")]
     (long,) = [long for _, long, ink in bars if ink == IDEAL]
-    shown = np.sqrt(np.mean(np.sum(arrows[0] ** 2, axis=-1)))  # px of the panel
+    shown = np.sqrt(np.mean(np.sum(arrows[0] ** 2, axis=-1)))  # px of the photographs
     missed = numbers(drawing.sentence)[1]
-    assert long / length == pytest.approx(shown / missed, rel=5e-3)
+    times = float(titles[0].partition("× ")[2].replace(",", ""))
+    assert times == pytest.approx(shown / missed, rel=5e-3)
+    assert long / length == pytest.approx(500 / 640 * times, rel=5e-3)  # px of the panel
     assert 20 < long < 61
 
 
@@ -3966,7 +3991,6 @@ ON_A_WAY = {  # along a curve, by its x
     ("glass", "ball"),
     ("ransac", "draw"),
     ("rings", "place"),
-    ("clouds", "window"),
     ("epipolar", "depth"),
     ("stands", "plane"),
     ("zoom", "sensor"),
@@ -3974,7 +3998,6 @@ ON_A_WAY = {  # along a curve, by its x
     ("similar", "tree"),
     ("similar", "film"),
     ("clicks", "circle"),
-    ("hinge", "angle"),
     ("protractor", "left"),
     ("protractor", "right"),
     ("stop", "stop"),
@@ -3986,6 +4009,7 @@ ON_A_WAY = {  # along a curve, by its x
     ("rectification", "seam"),
     ("subpixel", "upper end"),
     ("subpixel", "lower end"),
+    ("whose", "middle"),
 }
 ROUND = {
     ("rim", "ring"),
@@ -4063,7 +4087,7 @@ def test_what_is_pulled_follows_the_hand(name, held, by):
     if (name, held) in ROUND:  # on a sphere, see below, or on a circle
         assert after.at != before.at
     elif (name, held) in ON_A_WAY:
-        assert off[0] < (14 if name == "clouds" else 9)  # from window to window
+        assert off[0] < 9
     elif (name, held) in ON_A_CURVE:
         far = np.linalg.norm((wanted - [before.at, after.at]) / before.unit, axis=1)
         assert far[1] < far[0]
@@ -4120,7 +4144,7 @@ def test_on_a_narrow_page_panels_come_below_each_other(name):
     wide = model.drawing()
     narrow = model.drawn_on(Paper(narrow=True), model.values())
     part = 1.01 if name == "gimbal" else 0.7  # it has one panel
-    part = 1.01 if name in ("gimbal", "ways", "six") else 0.7  # these have one panel
+    part = 1.01 if name in ("gimbal", "clouds", "six") else 0.7  # these have one panel
     assert narrow.picture.shape[1] < part * wide.picture.shape[1]
     assert narrow.sentence == wide.sentence
     inked = [np.abs(drawing.picture.astype(int) - 255).sum() for drawing in (wide, narrow)]
@@ -4210,32 +4234,7 @@ def test_a_page_may_pull_a_grip():
     assert (rest["values"]["du1"], rest["values"]["dv1"]) == (12, -7)
 
 
-# A forged shadow, a corner between the pixels, and what was found in readers' hands.
-
-
-def test_a_shadow_is_true_exactly_if_both_of_its_lines_end_where_they_should():
-    A, sun = np.array([[800, 0, 325], [0, 804, 238], [0, 0, 1.0]]), np.array([0.06, -0.2, 0.8])
-
-    def seen(M):
-        u, v, w = A @ M
-        return np.array([u / w, v / w])
-
-    top, foot = np.array([-4.0, -4.05, 40]), np.array([-4.0, 1.95, 40])
-    true = top - 6 / 0.2 * sun  # on the ground, 1.95 m below the camera
-    # One more tip on the line through the sun and the top: along the ground it points elsewhere.
-    ray = np.linalg.solve(A, [*(seen(top) + 1.2 * (seen(true) - seen(top))), 1])
-    other = (1.95 * ray / ray[1] - true).round(2)
-    for aside, ahead in ((1, 0), (0, 0), (-2, 1.5), (0.3, -1), (other[0], other[2])):
-        tip, misses = seen(true + [aside, 0, ahead]), []
-        for by, end in ((top, sun), (foot, sun * [1, 0, 1])):
-            line = np.cross([*tip, 1], [*seen(by), 1])
-            misses.append(abs(line @ [*seen(end), 1]) / np.hypot(*line[:2]))
-        # The sliders count from where it was painted, 2.5 m aside.
-        sentence = MODELS["forged"].drawing(aside=aside - 2.5, ahead=ahead).sentence
-        assert numbers(sentence) == pytest.approx(misses, abs=0.051)
-        assert sentence.endswith(": true.") == (max(misses) < 2) == (aside == ahead == 0)
-    assert misses[0] < 0.5
-    assert misses[1] > 4
+# A corner between the pixels, and what was found in readers' hands.
 
 
 @pytest.mark.parametrize("corner", [22, 12, 40])
@@ -5046,15 +5045,6 @@ def test_the_pose_of_the_bowl_points_to_the_hand_and_imitates_the_camera_along_i
         assert ("unknown" in MODELS["imitation"].drawing(turn=turn).sentence) == (
             turn in (45, -135)
         )
-
-
-def test_the_bend_of_the_hinge_is_pulled_along_an_axis_that_ends_at_one_plane():
-    for angle in (90, 135, 172, 179, 180):
-        at = grip_of(MODELS["hinge"].drawing(angle=angle), "angle").at
-        assert MODELS["hinge"].dragged("angle", at)["angle"] == angle
-        if angle < 180:
-            told = numbers(MODELS["hinge"].drawing(angle=angle).sentence)[-1]
-            assert 10 ** np.array(at) == pytest.approx([1 / (180 - angle), told], rel=0.02)
 
 
 def test_the_sun_of_the_width_that_A_gives_is_round_in_its_circle_and_the_guessed_one_is_not():

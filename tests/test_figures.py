@@ -364,10 +364,10 @@ def test_the_head_of_a_chapter_follows_one_corner_and_lights_the_steps_of_the_ch
         ends = [path.get("d") for path in drawn.findall(".//{*}path") if "H" in path.get("d")]
         begin, tip = (float(re.search(rf"{letter}([\d.]+)", ends[0])[1]) for letter in "MH")
         assert (tip > begin) == forwards
-        assert "(595, 411)" in picture.alt  # chapter 4 works it out, step by step
-    for chapter in (2, 3):  # no lens: 800 · 0.35193 + 325 and 804 · 0.22428 + 238
+        assert "(523, 327)" in picture.alt  # chapter 4 works it out, step by step
+    for chapter in (2, 3):  # no lens: 800 · 0.25197 + 325 and 804 · 0.11329 + 238
         bare = one_corner(chapter)
-        assert "no lens (0.352, 0.224), pixel (607, 418)" in bare.alt
+        assert "no lens (0.252, 0.113), pixel (527, 329)" in bare.alt
         assert bare.data.count(b"line-through") == 1
     assert one_corner(4).data.count(b"line-through") == 0
     boxes = [one_corner(chapter).data.count(b"h-144z") for chapter in (4, 5, 11)]
@@ -464,7 +464,7 @@ def test_the_sheets_of_projects_and_exercises_have_tiles_and_what_is_drawn_stays
     from xml.etree import ElementTree
 
     for picture, names, wide in (
-        (eight_projects(), [*"12345678"], 4), (exercise_map(), [*"PTLHZWMIYT"], 5),
+        (eight_projects(), [*"12345678"], 4), (exercise_map(), [*"PVTLCHZWMIYT"], 6),
     ):  # fmt: skip
         for drawing, columns in ((picture.data, wide), (picture.narrow, 2)):
             tiles = ElementTree.fromstring(drawing).findall("{*}g")

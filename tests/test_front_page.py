@@ -52,11 +52,11 @@ def test_it_says_what_readme_says_and_its_buttons_follow_what_there_is():
     assert (ROOT / opened).is_file()  # JupyterLite has them in the repository's places
 
 
-def test_it_counts_its_questions_and_its_notebooks():
+def test_it_counts_its_questions_and_its_chapters():
     page = front_page.front_page(live=True, lite=True)
-    numbers = dict(enumerate(("Ten", "Eleven", "Twelve", "Thirteen", "Fourteen"), 10))
+    numbers = dict(enumerate(("Ten", "Eleven", "Twelve", "Thirteen"), 10))
     assert f"## {numbers[len(CHAPTERS)]} questions" in page
-    assert f"{numbers[len(CHAPTERS) + 1]} notebooks find all this" in page
+    assert f"{numbers[len(CHAPTERS)]} chapters find all this" in page
 
 
 def test_the_hours_it_names_are_those_of_all_chapters():

@@ -2,7 +2,13 @@
 
 import html
 import json
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
 
+import nbformat
 import numpy as np
 import pytest
 from PIL import Image
@@ -10,8 +16,14 @@ from PIL import Image
 from cvnotes.base import CvnotesError, FileError
 from cvnotes.show import pull_points
 from cvnotes.show.explorations.hand import _clearest, hand_model
-from cvnotes.show.explorations.strokes import circle
+from cvnotes.show.explorations.page import asked, with_photograph
+from cvnotes.show.explorations.paper import circle
+from cvnotes.show.explorations.pulled import pulled_model
 from cvnotes.show.style import ESTIMATED
+
+ROOT = Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(ROOT / "tools"))
+from browser_parts import _shown  # noqa: E402
 
 # Every pixel of the photograph has a colour of its own.
 V, U = np.mgrid[:120, :160]
@@ -209,7 +221,8 @@ def test_the_widget_keeps_its_points_tells_them_and_leaves_a_still():
     assert html.escape(widget.model.drawing(**widget.values).sentence) in bundle
     assert "<img" in bundle
     assert "pull its points" in bundle
-    assert "data-explore" not in bundle  # a page has no function of the reader's
+    told = re.search('data-explore="(.*?)"', bundle)[1]
+    assert json.loads(html.unescape(told))["settings"][1]["value"] == 20
     widget.reset_button.click()
     assert widget.points.tolist() == AT.tolist()
     widget.close_all()
@@ -225,3 +238,81 @@ def test_a_points_number_keeps_clear_of_lines_and_of_other_points():
     assert abs(aside[1]) > 15  # px from the line
     assert np.linalg.norm(aside - [0, 22]) > 15
     assert aside[0] > 0  # and of such places the outermost
+
+
+# On a page: what the cells of a notebook need for their call, and no more.
+
+PAGES = [
+    pytest.param([c.source for c in cells[: i + 1]], cell, id=f"{path.stem[:4]} {i}")
+    for path in sorted((ROOT / "notebooks").glob("*.ipynb"))
+    for cells in [[c for c in nbformat.read(path, 4).cells if c.cell_type == "code"]]
+    for i, cell in enumerate(cells)
+    if re.search(r"^pull_points\(", cell.source, re.MULTILINE)
+]
+
+
+@pytest.mark.parametrize(("sources", "cell"), PAGES)
+def test_on_its_page_a_call_says_what_it_said_in_the_notebook(sources, cell, monkeypatch):
+    monkeypatch.chdir(ROOT / "notebooks")
+    said = pulled_model(tuple(sources)).drawing().sentence
+    assert html.escape(said) in cell.outputs[0]["data"]["text/html"]
+
+
+def test_no_page_needs_more_for_its_call_than_it_has_loaded(tmp_path):
+    """Of scipy, OpenCV and matplotlib, and of most photographs, a page has none at first."""
+    run = """if True:
+        import json, sys
+        from pathlib import Path
+        for name in ("scipy", "cv2", "matplotlib"):
+            sys.modules[name] = None
+        from cvnotes.pictures import course
+        from cvnotes.show.explorations.pulled import pulled_model
+        course.DATA = Path(sys.argv[1])
+        for sources in json.load(sys.stdin):
+            assert pulled_model(tuple(sources)).drawing().sentence
+    """
+    given = json.dumps([page.values[0] for page in PAGES])
+    for path in _shown():
+        target = tmp_path / path.relative_to(ROOT / "data")
+        target.parent.mkdir(exist_ok=True)
+        shutil.copy(path, target)
+    subprocess.run([sys.executable, "-c", run, tmp_path], input=given, text=True, check=True)
+    assert len(PAGES) > 8
+
+
+def test_of_the_cells_of_a_page_those_statements_run_that_the_call_needs():
+    cells = (
+        "%pip install something",
+        "import numpy as np\nfrom os import nowhere",
+        "far, near = 1, 2\nslow = 1 / 0\nprint(slow)",
+        "def say(far):\n    return f'{far + near + later}'",
+        "near = sum([near for near in (0, 0)]) + near",  # one name, of a list and of the page
+        "def told(_, points, near=0):\n    return say([x for x in points][0][0]), []",
+        "later = 10\npull_points(np.zeros((30, 40)), [[near, 20]], told)",
+    )
+    model = pulled_model(cells)
+    assert model.drawing().sentence == "14.0"
+    assert model.drawing(u1=30).sentence == "42.0"
+    for other in ((), ("pull_points(",), cells[:-1]):
+        with pytest.raises(CvnotesError, match="does not end in a call of pull_points"):
+            pulled_model(other)
+    with pytest.raises(NameError, match="missing"):
+        pulled_model(("pull_points(missing, [[1, 2]], print)",))
+
+
+def test_on_a_page_a_photograph_of_ones_own_takes_the_place_of_the_picture(tmp_path):
+    path = tmp_path / "mine.png"
+    Image.fromarray(np.full((300, 400, 3), 90, np.uint8)).save(path)
+    cells = [
+        "import numpy as np",
+        "def told(photo, points):\n    return f'{photo.shape[1]} wide, {points[0]}', []",
+        "pull_points(np.zeros((30, 40)), [[7, 20]], told)",
+    ]
+    told = json.loads(with_photograph(cells, str(path)))
+    assert told["sentence"].startswith("400 wide")
+    assert [each["high"] for each in told["settings"]] == [1, 399, 299]
+    question = {"name": "pull_points", "cells": cells, "photo": str(path), "values": {"u1": 50}}
+    assert json.loads(asked(json.dumps(question)).rest)["sentence"].startswith("400 wide, [50.")
+    del question["photo"]
+    question["values"] = {"u1": 30}
+    assert json.loads(asked(json.dumps(question)).rest)["sentence"].startswith("40 wide")

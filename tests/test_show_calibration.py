@@ -102,3 +102,13 @@ def _pixels(ax):
     canvas = FigureCanvasAgg(ax.figure)
     canvas.draw()
     return np.asarray(canvas.buffer_rgba())[..., :3].astype(int)
+
+
+def test_each_face_that_is_seen_has_its_own_number_of_spots_around_its_middle():
+    camera = Camera(SENSOR, look_at([226, 345, -185], [50, 25, 0], up=(0, 0, -1)))
+    faces = draw_cube(camera, SIDE, origin=(25, 0)).collections[1:]  # after the shade of the foot
+    spots = [np.array([path.vertices.mean(axis=0) for path in face.get_paths()]) for face in faces]
+    assert [len(each) for each in spots] == [5, 4, 6]  # the top, high x, high y
+    middles = camera.project([[50, 25, -50], [75, 25, -25], [50, 50, -25]])
+    for each, middle in zip(spots, middles, strict=True):
+        assert np.abs(each.mean(axis=0) - middle).max() < 2

@@ -405,3 +405,53 @@ def test_references_are_not_read_as_lists(site):
         assert not re.search(r'<span class="label">.*?</span>\s*<ol', text, re.S), path.name
         assert "upperalpha" not in text, path.name
     assert "Z. Zhang" in (site / "reference" / "calibration.html").read_text()
+
+
+@pytest.fixture(scope="module")
+def reminded(site):
+    """Give the words that can be pressed in each chapter, and what they say, links included."""
+    pair = re.compile(
+        r'class="word" popovertarget="(word-\d+)" aria-label="[^"]+">(.*?)</button>'
+        r'<span popover id="\1" class="reminder"><span>(?:<span class="math[^>]*>[^<]*</span>: )?'
+        r"<span>(.*?\))</span></span></span>",
+        re.DOTALL,
+    )
+    return {
+        path.stem: [
+            found[1:]
+            for found in pair.findall((site / "notebooks" / f"{path.stem}.html").read_text())
+        ]
+        for path in NOTEBOOKS
+    }
+
+
+def test_a_word_is_recalled_in_chapters_after_its_own_and_once_in_each(site, reminded):
+    for chapter, pressed in reminded.items():
+        text = (site / "notebooks" / f"{chapter}.html").read_text()
+        assert text.count("popovertarget=") == text.count("<span popover") == len(pressed)
+        for word, said in pressed:
+            (source,) = re.findall(r'href="\.\./notebooks/(\d\d_\w+)\.html#[\w-]+"', said)
+            assert source < chapter, (chapter, word)
+            assert "popover" not in said
+        assert len({said for _, said in pressed}) == len(pressed)
+
+
+def test_each_word_of_the_table_is_recalled_somewhere(reminded):
+    rows = (ROOT / "docs" / "words.md").read_text().count("](../notebooks/")
+    assert rows == len({said for pressed in reminded.values() for _, said in pressed}) > 25
+
+
+def test_a_word_that_is_pressed_says_what_it_is_until_escape(site, chromium):
+    page = chromium.new_page(viewport={"width": 390, "height": 700})
+    page.goto((site / "notebooks" / "11_board_we_believed.html").as_uri())
+    word = page.locator(".word", has_text="residual")
+    said = page.locator(".reminder", has_text="done its best")
+    assert not said.is_visible()
+    word.click()
+    assert said.is_visible()
+    box = said.bounding_box()
+    assert box["x"] >= 0
+    assert box["x"] + box["width"] <= 390
+    assert box["y"] + box["height"] <= 700
+    page.keyboard.press("Escape")
+    assert not said.is_visible()

@@ -16,6 +16,7 @@ from conftest import wait_for
 from PIL import Image
 
 from cvnotes.show.explorations import model
+from cvnotes.show.explorations.pulled import pulled_model
 from cvnotes.targets import Chessboard, find_corners
 
 CHAPTER = Path(__file__).parents[1] / "notebooks" / "06_homography_dlt.ipynb"
@@ -65,7 +66,7 @@ def test_the_keyboard_alone_reaches_all_and_is_held_nowhere(page, live_site):
     page.goto(f"{live_site}/notebooks/06_homography_dlt.html")
     page.wait_for_selector("mjx-container mjx-mo", state="attached", timeout=30_000)
     reached, moved = [], 0
-    for _ in range(300):
+    for _ in range(400):
         page.keyboard.press("Tab")
         focused = page.evaluate(FOCUSED)
         if focused["kind"] == "body":
@@ -88,9 +89,11 @@ def test_the_keyboard_alone_reaches_all_and_is_held_nowhere(page, live_site):
     assert focused["kind"] == "body", reached[-5:]  # and goes on at the browser's own buttons
     kinds = [kind for kind, _ in reached]
     cells = nbformat.read(CHAPTER, as_version=4).cells
-    code = "\n".join(cell.source for cell in cells if cell.cell_type == "code")
-    explored = [model(name) for name in re.findall(r'explore\("(\w+)"', code)]
-    assert len(explored) >= 5
+    code = [cell.source for cell in cells if cell.cell_type == "code"]
+    explored = [model(name) for name in re.findall(r'explore\("(\w+)"', "\n".join(code))]
+    pulled = [i for i, source in enumerate(code, 1) if "\npull_points(" in source]
+    explored += [pulled_model(tuple(code[:i])) for i in pulled]
+    assert len(explored) >= 6
     assert (
         kinds.count("range")
         == moved
@@ -99,6 +102,7 @@ def test_the_keyboard_alone_reaches_all_and_is_held_nowhere(page, live_site):
     assert kinds.count("textarea") == 5
     corners = [name for _, name in reached if "move it with the arrow keys" in name]
     assert len(corners) == sum(len(one.drawing().grips) for one in explored)
+    assert [name for _, name in reached].count("Your own photograph") == len(pulled) == 1
     for name in ("Check", "Hint", "Solution", "Start again", "Save as a notebook"):
         assert [n for _, n in reached].count(name) == 5, name
     assert "mjx-container" not in kinds  # a hundred formulas are no stops

@@ -14,9 +14,11 @@ import numpy as np
 import pytest
 from accessible import violations
 from conftest import IMPATIENT, QuietHandler, serving, taken
+from PIL import Image
 
 from cvnotes.commands.cli import main as cvnotes
 from cvnotes.show.explorations import NAMES, explore, model
+from cvnotes.show.explorations.pulled import pulled_model
 
 ROOT = Path(__file__).resolve().parents[1]
 NOTEBOOKS = sorted((ROOT / "notebooks").glob("*.ipynb"))
@@ -274,6 +276,40 @@ def test_the_browsers_picture_is_the_notebooks(all_explorations):
     assert off < min(1, 0.5 * by_a_degree)
 
 
+def test_points_are_pulled_on_their_page_and_over_a_photograph_of_ones_own(
+    chromium, live_site, tmp_path
+):
+    path = tmp_path / "street.png"
+    Image.fromarray(np.full((300, 400, 3), 90, np.uint8)).save(path)
+    cells = nbformat.read(NOTEBOOKS[1], as_version=4).cells
+    code = [cell.source for cell in cells if cell.cell_type == "code"]
+    code = tuple(code[: 1 + next(i for i, each in enumerate(code) if "\npull_points(" in each)])
+    page = chromium.new_page()
+    page.goto(f"{live_site}/notebooks/{NOTEBOOKS[1].stem}.html")
+    box = page.locator('.explore[aria-label="Exploration: pull_points"]')
+    for photo in (None, str(path)):
+        model = pulled_model(code, photo)
+        if photo:
+            box.locator("input[type=file]").set_input_files(photo)
+            assert comes(page, says, box, model.drawing().sentence)
+        assert unfold(box)
+        slider = box.get_by_label("u1", exact=True)
+        slider.focus()
+        for _ in range(40):  # half a pixel each
+            page.keyboard.press("ArrowRight")
+        u1 = model.values()["u1"] + 20
+        assert float(slider.input_value()) == u1
+        assert comes(page, says, box, model.drawing(u1=u1).sentence)
+    none = tmp_path / "words.png"
+    none.write_text("no picture")
+    box.locator("input[type=file]").set_input_files(none)
+    state = box.locator(".explore-state")
+    why = "words.png: not a picture, or in a format that is not read"
+    assert comes(page, lambda: state.inner_text().startswith(why))
+    assert says(box, model.drawing(u1=u1).sentence)
+    page.close()
+
+
 def test_a_mouse_pulls_corners_directions_and_the_camera(all_explorations):
     page = all_explorations
     boxes = explorations(page)
@@ -368,7 +404,7 @@ def test_each_chapter_has_its_explorations_and_its_exercises_on_any_width(
     sources = [cell.source for cell in cells if cell.cell_type == "code"]
     wanted = [
         sum(bool(re.search(call, source, re.MULTILINE)) for source in sources)
-        for call in (r"^explore\(", r'^check\("\w+", ')
+        for call in (r"^(?:explore|pull_points)\(", r'^check\("\w+", ')
     ]
     telephone.goto(f"{address}/notebooks/{notebook.stem}.html")
     telephone.wait_for_load_state()

@@ -51,8 +51,9 @@ WRONG = """def my_camera_centre(R, T):
 check("camera_centre", my_camera_centre)"""
 # Before the picture, which follows the hand.
 QUESTION = """<p class="front-question"><strong>The tower is not there:</strong> it is drawn where
-the camera would see it. Pull it. Then pull the camera nearer, as if we had mistaken where it stood.
-Can its glass pane alone bring the tower back into the dashed outline?</p>"""
+the camera would see it. Pull the camera nearer, as if we had mistaken where it stood: the tower
+leaves its true outline, dashed. Can a shorter focal length hide this? Pull the glass pane towards
+the camera.</p>"""
 # Below it.
 SOLUTION = """<details><summary>Answer</summary><p>No: when the foot is right,
 the top is not. <a href="notebooks/00_start_here.html">Chapter 0</a> says why.</p></details>"""

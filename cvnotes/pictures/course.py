@@ -13,8 +13,9 @@ import numpy.typing as npt
 
 from cvnotes.base import Array, FileError, whole
 from cvnotes.base.material import material
-from cvnotes.camera import Camera
+from cvnotes.camera import Camera, rotation_from_vector
 from cvnotes.files import read_camera, read_photo
+from cvnotes.pictures.placing import hold_at
 from cvnotes.targets import Chessboard
 
 DATA = material("data")
@@ -108,6 +109,20 @@ def measured_corners() -> Array:
     True
     """
     return np.array(_json("views.json")["measured_corners"])
+
+
+def first_pose() -> Array:
+    """Return where the board is in the first photograph of chapter 0, (4, 4), CRF ← board.
+
+    Its last corner is the one that the head of every chapter follows.
+
+    Examples
+    --------
+    >>> camera().moved(first_pose()).project([200, 125, 0]).round(1)
+    array([522.8, 327.4])
+    """
+    tilt = rotation_from_vector([0.45, 0.25, -0.03])
+    return hold_at(board(), camera(), tilt, aim=[330, 215], farther=1.15)
 
 
 def first_corners() -> Array:

@@ -10,10 +10,7 @@ from cvnotes.show.figures.lines import draw_lines, draw_segments
 from cvnotes.show.links import chain
 from cvnotes.show.picture import Picture, show
 from cvnotes.show.projects import eight_projects, exercise_map
-from cvnotes.show.space.camera_shapes import (
-    camera_shapes,
-    ray_shapes,
-)
+from cvnotes.show.space.camera_shapes import camera_shapes, ray_shapes
 from cvnotes.show.space.shapes import (
     Faces,
     Label,
@@ -29,47 +26,21 @@ from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, LENS, WORLD, colour_of
 
 __all__ = [
     # a picture on the page
-    "show",
-    "Picture",
-    "panels",
-    "one_corner",
+    "show", "Picture", "panels", "one_corner",
     # pictures, and what is drawn into them
-    "draw_image",
-    "draw_points",
-    "draw_corners",
-    "draw_lines",
-    "draw_segments",
+    "draw_image", "draw_points", "draw_corners", "draw_lines", "draw_segments",
     # the colours
     "draw_meanings",
     # chapter 7: its strip, a cube on the board
-    "chain",
-    "draw_cube",
+    "chain", "draw_cube",
     # the further exercises
-    "eight_projects",
-    "exercise_map",
+    "eight_projects", "exercise_map",
     # in space
-    "draw_scene",
-    "build_scene",
-    "show_scene",
-    "Viewer",
-    "export_glb",
-    "axes_shapes",
-    "target_shapes",
-    "scene_shapes",
-    "camera_shapes",
-    "ray_shapes",
-    "Faces",
-    "Lines",
-    "Photo",
-    "Label",
-    "colour_of",
+    "draw_scene", "build_scene", "show_scene", "Viewer", "export_glb", "axes_shapes",
+    "target_shapes", "scene_shapes", "camera_shapes", "ray_shapes", "Faces", "Lines", "Photo",
+    "Label", "colour_of",
     # colours with a meaning
-    "WORLD",
-    "CAMERA",
-    "IDEAL",
-    "LENS",
-    "ESTIMATED",
+    "WORLD", "CAMERA", "IDEAL", "LENS", "ESTIMATED",
     # an idea with sliders, and a photograph with points to be pulled
-    "explore",
-    "pull_points",
-]
+    "explore", "pull_points",
+]  # fmt: skip

@@ -65,13 +65,13 @@ def one_corner(chapter: int) -> Picture:
     Examples
     --------
     >>> one_corner(4)
-    One corner: world (200, 125, 0) mm, camera (99.6, 63.5, 283.1) mm, plane z = 1 (0.352, 0.224),
-    behind the lens (0.338, 0.215), pixel (595, 411). Lit: lens
+    One corner: world (200, 125, 0) mm, camera (104.7, 47.1, 415.6) mm, plane z = 1 (0.252, 0.113),
+    behind the lens (0.247, 0.111), pixel (523, 327). Lit: lens
     """
     chapter = whole(chapter, "chapter", at_least=0, at_most=max(_LIT))
     from cvnotes.pictures import course
 
-    camera = course.camera().moved(look_at([125, 40, -285], [100, 62, 0]))
+    camera = course.camera().moved(course.first_pose())
     W = np.concatenate([_dark_squares(25.0).reshape(-1, 3), [[200, 125, 0]]])
     M = move(camera.G, W)
     xy = M[:, :2] / M[:, 2:]
@@ -80,34 +80,30 @@ def one_corner(chapter: int) -> Picture:
     m = px_from_xy(camera.A, seen)
     frame = np.array([[0, 0], [640, 0], [640, 480], [0, 480], [0, 0]]) - 0.5
     border = xy_from_px(camera.A, frame)
-    beside = Camera(intrinsics(1, 1, 0, 0), look_at([-520, -260, -330], [20, 10, 150]))
+    beside = Camera(intrinsics(1, 1, 0, 0), look_at([-420, -260, -420], [20, 10, 150]))
     eye = beside.project(np.zeros(3))
     cone = beside.project(120 * np.column_stack([border, np.ones(5)]))
     cone = np.concatenate([[leg for tip in cone[:4] for leg in (tip, eye)], cone])
     # So many digits that each step, with the numbers that are written, gives the next ones.
     states = (
-        ("world", W[:, :2], None, WORLD, "({:.0f}, {:.0f}, {:.0f}) mm", W[-1]),
-        ("camera", beside.project(M), cone, WORLD, "({:.1f}, {:.1f}, {:.1f}) mm", M[-1]),
-        ("z = 1", xy, border, IDEAL, "({:.3f}, {:.3f})", xy[-1]),
-        (behind, seen, border, LENS, "({:.3f}, {:.3f})", seen[-1]),
-        ("pixel", m, frame, LENS, "({:.0f}, {:.0f})", m[-1]),
+        ("world", W[:, :2], None, WORLD, "({:.0f}, {:.0f}, {:.0f}) mm".format(*W[-1])),
+        ("camera", beside.project(M), cone, WORLD, "({:.1f}, {:.1f}, {:.1f}) mm".format(*M[-1])),
+        ("z = 1", xy, border, IDEAL, "({:.3f}, {:.3f})".format(*xy[-1])),
+        (behind, seen, border, LENS, "({:.3f}, {:.3f})".format(*seen[-1])),
+        ("pixel", m, frame, LENS, "({:.0f}, {:.0f})".format(*m[-1])),
     )
     lit = _LIT.get(chapter, STEPS)
 
     def drawn(layout: _Layout, kind: str) -> bytes:
-        parts = [
-            _panel(layout, k, name, points, outline, colour, form.format(*numbers))
-            for k, (name, points, outline, colour, form, numbers) in enumerate(states)
-        ]
+        parts = [_panel(layout, k, *state) for k, state in enumerate(states)]
         backwards = chapter in _BACKWARDS
         at_once = chapter == 6 and layout is _STRIP  # H: all steps but the lens in one
         shown = () if at_once else lit
         parts += [
             _step(layout, k, name, name in shown, backwards, bare and name == "lens")
+            + (_below_step(layout, k) if chapter == 0 else "")
             for k, name in enumerate(STEPS)
         ]
-        if chapter == 0:
-            parts += [_below_step(layout, k, words) for k, words in enumerate(_IN_WORDS)]
         if chapter in _BOXED:
             x, y = layout.place(_BOXED[chapter][0]) - [3, 4]
             parts.append(f'<path d="M{x} {y}h{layout.wide + 6}v{layout.tall + 8}'
@@ -120,7 +116,7 @@ def one_corner(chapter: int) -> Picture:
         body = f'<g class="{kind}">{"".join(parts)}</g>'
         return svg(body, width + 8, height, style=_STYLE, left=-4)
 
-    said = [form.format(*numbers) for *_, form, numbers in states]
+    said = [numbers for *_, numbers in states]
     shines = ", ".join(lit) or _BOXED[chapter][1]
     alt = (
         f"One corner: world {said[0]}, camera {said[1]}, plane z = 1 {said[2]}, "
@@ -140,25 +136,19 @@ def _dark_squares(side: float) -> Array:
 
 
 def _panel(
-    layout: _Layout,
-    number: int,
-    name: str,
-    points: Array,
-    outline: Array | None,
-    colour: str,
-    numbers: str,
+    layout: _Layout, k: int, name: str, points: Array, outline: Array | None, ink: str, said: str
 ) -> str:
     """Draw the board in one of its five states, and the corner that is followed."""
     everything = points if outline is None else np.concatenate([points, outline])
     low, high = everything.min(axis=0), everything.max(axis=0)
     room = np.array([layout.wide, layout.tall])
-    left, top = layout.place(number)
+    left, top = layout.place(k)
     scale = np.min(room / (high - low))
     shift = [left, top] + room / 2 - scale * (low + high) / 2
     (*board, (x, y)) = scale * points + shift
     squares = "".join(f"{_line(square)}z" for square in np.reshape(board, (-1, 4, 2)))
     middle = left + layout.wide // 2
-    drawn = f'<path d="{squares}" fill="{colour}"/>'
+    drawn = f'<path d="{squares}" fill="{ink}"/>'
     if outline is not None:
         border = _line(scale * outline + shift)
         if name == "pixel":  # what is beyond the picture is cut off
@@ -171,7 +161,7 @@ def _panel(
         f"{drawn}"
         f'<circle cx="{x:.1f}" cy="{y:.1f}" r="5" fill="{ESTIMATED}" stroke="white"/>'
         f'<text class="t" x="{middle}" y="{top - 10}">{name}</text>'
-        f'<text class="n" x="{middle}" y="{top + layout.tall + 18}">{numbers}</text>'
+        f'<text class="n" x="{middle}" y="{top + layout.tall + 18}">{said}</text>'
     )
 
 
@@ -210,8 +200,7 @@ def _step(
     )
 
 
-def _below_step(layout: _Layout, number: int, words: str) -> str:
+def _below_step(layout: _Layout, number: int) -> str:
     """Write below an arrow what its step does."""
-    left, top = layout.place(number + 1)
-    x, y = left - layout.gap // 2, top + layout.tall // 2 + 20
-    return f'<text class="n" x="{x}" y="{y}">{words}</text>'
+    x, y = layout.place(number + 1) + [-layout.gap // 2, layout.tall // 2 + 20]
+    return f'<text class="n" x="{x}" y="{y}">{_IN_WORDS[number]}</text>'

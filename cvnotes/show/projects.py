@@ -49,11 +49,12 @@ def exercise_map() -> Picture:
     Examples
     --------
     >>> str(exercise_map())[:70]
-    'Ten cards. Projective space: 1 ★, A ★★, B ★★★. The camera model: 2 ★. '
+    'Twelve cards. Projective space: 1 ★, A ★★. Vanishing points: B ★★. The'
     """
     tiles = (
-        ("Projective space", _rails(), "1 ★", "A ★★  B ★★★"), ("The camera model", _wedge(), "2 ★"),
-        ("Lens distortion", _bent(), "3 ★★", "C ★★"), ("Homographies", _missed(), "4 ★", "D ★★★"),
+        ("Projective space", _rails(), "1 ★", "A ★★"), ("Vanishing points", _poles(), "B ★★"),
+        ("The camera model", _wedge(), "2 ★"), ("Lens distortion", _bent(), "3 ★★", "C ★★"),
+        ("Calibration targets", _weighted(), "D ★★"), ("Homographies", _missed(), "4 ★"),
         ("Zhang’s calibration", _boards(), "5 ★★  6 ★★  7 ★★", "E ★★★  F ★★★"),
         ("Without a board", _turned(), "8 ★★★"), ("Many views", _arrow(), "9 ★★★"),
         ("Image warping", _pixels(), "10 ★★"),
@@ -61,7 +62,7 @@ def exercise_map() -> Picture:
         ("Two pictures", _diamond(), "13 ★★  14 ★★"),
     )  # fmt: skip
     named = (f"{name}: {', '.join('  '.join(tasks).split('  '))}." for name, _, *tasks in tiles)
-    return _sheet(tiles, 5, f"Ten cards. {' '.join(named)}", 18)
+    return _sheet(tiles, 6, f"Twelve cards. {' '.join(named)}", 21)
 
 
 def _sheet(tiles: Sequence[tuple[str, ...]], columns: int, alt: str, size: int) -> Picture:
@@ -258,6 +259,23 @@ def _rails() -> str:
     return (_path("M0 60H200V140H0Z", "none", 0, "#DCE8D6") + "".join(sleepers)
             + _path("M40 140L100 60L160 140", MUTED, 4) + _path("M40 140L145 0", ESTIMATED, 3)
             + _dot(55, 120, ESTIMATED, 6) + _dot(85, 80, ESTIMATED, 6))  # fmt: skip
+
+
+def _poles() -> str:
+    """Draw three poles that stand equally far apart, and the line on which their feet are."""
+    drawn = _path("M0 60H200V140H0Z", "none", 0, "#DCE8D6") + _path("M20 132L170 60", ESTIMATED, 3)
+    for z in (1, 2, 3, 4, 5):
+        x, y, high = 170 - 138 / z, 60 + 66 / z, 116 / z
+        drawn += _path(f"M{x:.0f} {y:.0f}v{-high:.0f}", "#7A5230", 2 + 5 / z)
+        drawn += _dot(x, y, ESTIMATED, 6) if z < 4 else ""
+    return drawn
+
+
+def _weighted() -> str:
+    """Draw three points with their scatter, and the line that heeds the certain ones more."""
+    bars = "".join(_path(f"M{x} {y - half}v{2 * half}", LENS, 2) + _dot(x, y, LENS, 5)
+                   for x, y, half in ((44, 98, 14), (96, 100, 14), (152, 42, 32)))  # fmt: skip
+    return _line([[14, 120], [186, 52]], ESTIMATED, 3) + bars
 
 
 def _wedge() -> str:

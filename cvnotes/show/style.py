@@ -15,13 +15,7 @@ IDEAL = "#000000"
 LENS = "#0072B2"
 ESTIMATED = "#D55E00"
 
-COLOURS = {
-    "world": WORLD,
-    "camera": CAMERA,
-    "ideal": IDEAL,
-    "lens": LENS,
-    "estimated": ESTIMATED,
-}
+COLOURS = {"world": WORLD, "camera": CAMERA, "ideal": IDEAL, "lens": LENS, "estimated": ESTIMATED}
 # The same hues for words, dark enough to be read on white: at least 4.5 : 1 (WCAG 2.2 AA).
 INK = {WORLD: "#00805D", CAMERA: "#2279AD", ESTIMATED: "#BC5200"}
 MARKERS = {"world": "s", "camera": "^", "ideal": "+", "lens": "o", "estimated": "x"}

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 _MODELS = ("camera", "lens", "tilt")
 # or of what the course itself has photographed or thought of.
 _STORIES = (
-    "straighten", "stands", "ring", "maps", "ruler", "eye", "rod", "shadows", "forged",
+    "straighten", "stands", "ring", "maps", "ruler", "eye", "rod", "shadows",
     "triangle", "formation", "pinhole", "dolly", "walks", "gimbal", "fisheye", "clouds",
     "subpixel", "votes", "twins", "ellipse", "ransac", "homography", "fold", "folds", "finding",
     "moved", "eleventh", "sheets", "whose", "between", "rings", "plane", "epipolar",
@@ -32,7 +32,7 @@ _STORIES = (
     "residuals", "hinge", "horizon", "nails", "origin", "similar", "clicks", "zoom", "rim",
     "decentred", "rail", "protractor", "asks", "glass", "stop", "rodrigues", "push", "wishes",
     "bowl", "rows", "entries", "parabola", "six", "parallel", "warp", "poster", "thirteen",
-    "imitation", "uphill",
+    "imitation", "uphill", "forty",
 )  # fmt: skip
 __all__ = ["NAMES", "pull_points", "explore", "model"]
 NAMES = (*_MODELS, *_STORIES)

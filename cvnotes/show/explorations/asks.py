@@ -10,8 +10,7 @@ from cvnotes.homography import dlt
 from cvnotes.pictures import render_scene
 from cvnotes.pictures.posters import poster_room
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
-from cvnotes.show.explorations.paper import Drawn, Panel, Paper
-from cvnotes.show.explorations.strokes import circle
+from cvnotes.show.explorations.paper import Drawn, Panel, Paper, circle
 from cvnotes.show.style import ESTIMATED, IDEAL, LENS, hexed
 from cvnotes.warping import (
     PixelMap,
@@ -43,11 +42,9 @@ def asks_model() -> Model:
         Setting("u", "new pixel, across", 0, SIZE[0] - 1, 1, 31, "of 60; of 20 where it is shrunk"),
         Setting("v", "new pixel, down", 0, SIZE[1] - 1, 1, 18, "of 45; of 15 where it is shrunk"),
     )
-    about = (
-        "A new picture, one pixel of it framed; a line to the place in the photograph where it "
-        "asks; and the four pixels around that place, enlarged, with their weights and their mix. "
-        "Each new pixel has a dot where it asks, orange where the next one is over a pixel away."
-    )
+    about = """A new picture, one pixel of it framed; a line to the place in the photograph where it
+    asks; and the four pixels around that place, enlarged, with their weights and their mix. Each
+    new pixel has a dot where it asks, orange where the next one is over a pixel away."""
     drags = {"pixel": lambda _, at: {"u": float(at[0]), "v": float(at[1])}}
     return Model("asks", about, settings, _draw, drags)
 
@@ -105,15 +102,11 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     shown = (_LARGER * SIZE[0], _LARGER * SIZE[1])
     left = paper.picture_panel(shown, SIZE, "the new picture: pull the pixel that asks")
     left.image(new, smooth=False)
-    out, where, there = (
-        not ((at > -1) & (at < SIZE)).all(),
-        "",
-        "where they ask, orange if over 1 px apart",
-    )
+    where, there = "", "where they ask, orange if over 1 px apart"
     if warp == 4:
         nearer = f"{np.hypot(*(at - here)):.2f} px nearer to the middle"
         where, there = f", {nearer}", f"it asks {nearer}"
-    elif out:
+    elif not ((at > -1) & (at < SIZE)).all():
         where = ", beside the photograph"
     right = paper.picture_panel(shown, SIZE, f"{NAMES[warp - 1]}: {there}")
     right.image(_pale(photo), smooth=False)  # on which dots are seen everywhere
@@ -136,12 +129,9 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     left.grip("pixel", "a pixel of the new picture", here, wide)
     near, mix = _near(paper, photo, asked, (u, v)), _mix(paper, photo, at)
     across, down = far[v, u]
-    sentence = (
-        f"New pixel ({u}, {v}) asks at ({at[0]:.2f}, {at[1]:.2f}){where}; its neighbour in the row "
-        f"asks {across:.2f} px from there, the one in the column {down:.2f} px. All "
-        f"{new[..., 0].size} new pixels together read {read} of the photograph's "
-        f"{photo[..., 0].size}."
-    )
+    sentence = f"""New pixel ({u}, {v}) asks at ({at[0]:.2f}, {at[1]:.2f}){where}; its neighbour in
+    the row asks {across:.2f} px from there, the one in the column {down:.2f} px. All
+    {new[..., 0].size} new pixels together read {read} of the photograph's {photo[..., 0].size}."""
     return Drawing(paper.join((left, right, [near, mix])), sentence)
 
 

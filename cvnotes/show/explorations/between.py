@@ -4,7 +4,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cvnotes.base import Array
-from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
+from cvnotes.show.explorations.model import Drawing, Model, Setting, Values, placed
 from cvnotes.show.explorations.paper import Panel, Paper
 from cvnotes.show.style import ESTIMATED, IDEAL, LENS, hexed
 from cvnotes.warping import interpolate
@@ -24,11 +24,9 @@ def between_model() -> Model:
         Setting("du", "Δu", 0, 1, 0.05, 0.35, "how far right of I₁, in pixels"),
         Setting("dv", "Δv", 0, 1, 0.05, 0.6, "how far below I₁, in pixels"),
     )
-    about = (
-        "Four pixels and a place between their centres, which cuts the square between them into "
-        "four rectangles; and the same as a smooth surface."
-    )
-    drags = {"place": lambda _, at: {"du": float(at[0]), "dv": float(at[1])}}
+    about = """Four pixels and a place between their centres, which cuts the square between them
+    into four rectangles; and the same as a smooth surface."""
+    drags = {"place": placed("du", "dv")}
     return Model("between", about, settings, _draw, drags)
 
 
@@ -40,13 +38,11 @@ def weights(du: float, dv: float) -> Array:
 def _draw(paper: Paper, values: Values) -> Drawing:
     du, dv = values["du"], values["dv"]
     place, weight = np.array([du, dv]), weights(du, dv)
-    panels = _areas(paper, place, weight), _surface(paper, place)
+    drawn = paper.join((_areas(paper, place, weight), _surface(paper, place)))
     terms = " + ".join(f"{w:.2f} · {g:g}" for w, g in zip(weight, _GREY, strict=True))
     nearest = ", or ".join(f"{g:g}" for g in _GREY[weight > weight.max() - 1e-9])
-    return Drawing(
-        paper.join(panels),
-        f"{terms} = {weight @ _GREY:.1f}. The nearest pixel alone says {nearest}.",
-    )
+    said = f"{terms} = {weight @ _GREY:.1f}. The nearest pixel alone says {nearest}."
+    return Drawing(drawn, said)
 
 
 def _cell(paper: Paper, title: str) -> Panel:
@@ -73,8 +69,7 @@ def _areas(paper: Paper, place: Array, weight: Array) -> Panel:
         panel.text(at + (at - 0.5) * [0, 0.55], f"{name} = {grey:g}", LENS, anchor="mm", size=15)
         if (np.abs(1 - at - place) > [0.31, 0.12]).all():
             _write(panel, (1 - at + place) / 2, f"{name} × {w:.2f}", grey)
-    panel.mark(place, "estimated", 8)
-    panel.grip("place", "a place between four pixels", place, 8)
+    panel.grip("place", "a place between four pixels", place, 8, "estimated", 8)
     return panel
 
 

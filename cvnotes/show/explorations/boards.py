@@ -7,6 +7,7 @@ import numpy as np
 from cvnotes.base import Array
 from cvnotes.camera import Camera, rotation_from_vector
 from cvnotes.show.explorations.paper import Panel
+from cvnotes.show.space.directions import onto
 from cvnotes.show.space.shapes import Faces, Lines, target_shapes
 from cvnotes.show.style import MUTED
 from cvnotes.targets import Chessboard
@@ -14,7 +15,7 @@ from cvnotes.targets import Chessboard
 PAPER, SQUARES = "#FBFBF8", "#262629"
 _PALE = "#E2E2E2"  # squares that arrows or letters lie on
 # Seen a little from above and from the left: x to the right, y down, z away.
-_VIEW = rotation_from_vector([0.5, 0, 0]) @ rotation_from_vector([0, -0.1, 0])
+on_sheet = onto((rotation_from_vector([0.5, 0, 0]) @ rotation_from_vector([0, -0.1, 0]))[:2])
 
 
 def pinhole(camera: Camera) -> Camera:
@@ -48,10 +49,15 @@ def draw_measured(panel: Panel, m: Array, board: Chessboard) -> None:
 
 def draw_squares(panel: Panel, m: Array, board: Chessboard, colour: str) -> None:
     """Draw the dark squares between corners (n, 2)."""
-    grid = m.reshape(*board.corners[::-1], 2)
+    squares, dark = squares_between(m.reshape(*board.corners[::-1], 2))
+    panel.polygons(squares[dark], colour)
+
+
+def squares_between(grid: Array) -> tuple[Array, Array]:
+    """Return the squares (rows × columns, 4, d) between corners, and which of them are dark."""
     squares = np.stack([grid[:-1, :-1], grid[:-1, 1:], grid[1:, 1:], grid[1:, :-1]], axis=2)
-    row, column = np.indices(squares.shape[:2])
-    panel.polygons(squares[(row + column) % 2 == 0], colour)
+    dark = np.indices(squares.shape[:2]).sum(axis=0) % 2 == 0
+    return squares.reshape(-1, *squares.shape[2:]), dark.ravel()
 
 
 def draw_net(
@@ -70,19 +76,10 @@ def around(low: Array, high: Array, size: tuple[int, int], room: float) -> tuple
     return middle - reach, middle + reach
 
 
-def on_sheet(W: Array) -> Array:
-    """Project points of the world (..., 3) onto the sheet (..., 2), all parallel."""
-    return np.asarray(W @ _VIEW[:2].T)
-
-
 @lru_cache(maxsize=4)
 def paper_and_squares(board: Chessboard) -> tuple[Array, Array]:
     """Return the corners of a board's paper (4, 3) and of its dark squares (m, 4, 3)."""
     squares, border = target_shapes(board)
     assert isinstance(squares, Faces)
     assert isinstance(border, Lines)
-    return border.ends[:, 0], squares.corners[_dark(squares)]
-
-
-def _dark(squares: Faces) -> Array:
-    return np.asarray(squares.colours[:, 0] < 0.5)
+    return border.ends[:, 0], squares.corners[squares.colours[:, 0] < 0.5]

@@ -6,11 +6,11 @@ import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
-from cvnotes.show.explorations.paper import Panel, Paper
-from cvnotes.show.explorations.strokes import circle
+from cvnotes.show.explorations.paper import Panel, Paper, circle
 from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, MUTED, WORLD, mixed
 
 ALPHA, BESIDE, NEAR, SIGMA = 800, 240, 300, 0.1  # px, px beside the middle, mm, px
+_ENLARGED = 220  # how many mm of the plan show a move of 1 px
 _X = BESIDE / ALPHA  # of the near corner; the far one is on the other side
 _PLAN, _MOVES, _BOWL = (236, 290), (282, 290), (330, 290)  # px of the page
 _DOT = mixed(ESTIMATED, "#FFFFFF", 0.4)
@@ -55,21 +55,16 @@ def bowl_model() -> Model:
         Setting("alpha", "α (px)", -alpha, alpha, 0.01, 1.67, "a camera that is tried"),
         Setting("T_z", "distance (mm)", -T_z, T_z, 0.01, 0.70, "a distance that is tried"),
     )
-    about = (
-        "A tilted board from above; how both of its corners move in the picture if the camera "
-        "gets longer and the board goes away, amid the noise of 300 throws; and the errors of "
-        "α and of the distance that these throws bring, with the ellipse that the circle becomes."
-    )
+    about = """A tilted board from above, its picture below; how both corners move there if the
+    camera gets longer and the board goes away, amid the noise of 300 throws; and the errors of α
+    and of the distance that these throws bring, with the ellipse that the circle becomes."""
     noise = np.random.default_rng(0).normal(0, SIGMA, (300, 2))
 
     def draw(paper: Paper, values: Values) -> Drawing:
         tried, pair = np.array([values["alpha"], values["T_z"]]), pair_of(values["far"])
-        panels = (
-            _from_above(paper, values["far"]),
-            _moves(paper, pair, tried, noise),
-            _bowl(paper, pair, tried, noise),
-        )
-        return Drawing(paper.join(panels), _sentence(pair, tried))
+        board = _from_above(paper, values["far"], pair.J * tried)
+        beside = _moves(paper, pair, tried, noise), _bowl(paper, pair, tried, noise)
+        return Drawing(paper.join((board, *beside)), _sentence(pair, tried))
 
     ray = np.array([-_X, 1])
     drags = {
@@ -81,28 +76,32 @@ def bowl_model() -> Model:
 
 def _sentence(pair: Pair, tried: Array) -> str:
     right, left = (pair.J @ tried).round(2) + 0.0
-    said = (
-        f"With α {tried[0]:+.2f} px and the distance {tried[1]:+.2f} mm the right corner moves "
-        f"{right:+.2f} px outwards, the left one {left:+.2f} px. "
-    )
+    said = f"""With α {tried[0]:+.2f} px and the distance {tried[1]:+.2f} mm the right corner moves
+    {right:+.2f} px outwards, the left one {left:+.2f} px. """
     if np.isinf(pair.together):
         return f"{said}α has no ±: a camera longer by 1 px, 0.375 mm farther, sees the same."
     return f"{said}α has ± {pair.together:.2f} px, and ± {pair.alone:.2f} px at a known distance."
 
 
-def _from_above(paper: Paper, far: float) -> Panel:
-    half = 580 * _PLAN[0] / _PLAN[1] / 2
-    panel = paper.panel(_PLAN, (-half, half), (540, -40), "from above: pull the far corner")
+def _from_above(paper: Paper, far: float, moves: Array) -> Panel:
+    """Draw the board, and below the picture: how either corner moves for α, then for T_z."""
+    half = 750 * _PLAN[0] / _PLAN[1] / 2
+    panel = paper.panel(_PLAN, (-half, half), (530, -220), "from above: pull the far corner")
     near, away = np.array([[_X * NEAR, NEAR], [-_X * far, far]])
     panel.line(600 * np.array([[_X, 1], [0, 0], [-_X, 1]]), MUTED, 0.8)
     panel.line([[0, 0], [0, 600]], MUTED, 0.8, dash=4)
     panel.line([near, away], WORLD, 5)
     panel.mark([0, 0], "camera", 12)
-    panel.text([26, -4], "camera", CAMERA, size=13)
     panel.mark([near, away], "world", 7)
     for at, by in ((near, (16, 0)), (away, (28, 22))):
         panel.text(at + by, f"{at[1]:.0f} mm", WORLD, size=13)
-    panel.text((near + away) / 2 - [0, 62], "board", WORLD, anchor="mm", size=13)
+    panel.line([[-half, -130], [half, -130]], MUTED, 0.8)
+    panel.text([0, -170], "the picture", MUTED, anchor="mm", size=13)
+    for side, (longer, farther) in zip((1, -1), moves * _ENLARGED, strict=True):
+        corner, out = np.array([side * 100, -130]), np.array([side, 0])
+        panel.arrows(corner + [0, 18], longer * out, CAMERA, 4)
+        panel.arrows(corner + [0, -18] + longer * out, farther * out, WORLD, 2)
+        panel.mark(corner, "ideal", 6)
     panel.grip("far", "the far corner, along its ray", away, 5)
     return panel
 
@@ -117,18 +116,12 @@ def _moves(paper: Paper, pair: Pair, tried: Array, noise: Array) -> Panel:
     _dots(panel, noise)
     panel.line(SIGMA * circle(91), IDEAL, 1.8)
     longer, farther = pair.J.T * tried[:, None]
-    for start, way, colour, width in (
-        (np.zeros(2), longer, CAMERA, 5),
-        (longer, farther, WORLD, 2),
-    ):
-        if np.linalg.norm(way) > 0.01:
-            panel.arrows(start, way, colour, width)
+    for start, by, ink, width in ((0 * longer, longer, CAMERA, 5), (longer, farther, WORLD, 2)):
+        if np.linalg.norm(by) > 0.01:
+            panel.arrows(start, by, ink, width)
     panel.mark(longer + farther, "estimated", 7)
-    for (x, y), anchor, colour, words in (
-        ((-0.7, 0.7), "lm", WORLD, f"distance {tried[1]:+.2f} mm"),
-        ((0.7, -0.6), "rm", CAMERA, f"α {tried[0]:+.2f} px"),
-    ):
-        panel.text([x, y], words.replace("-", "−"), colour, anchor=anchor, size=13)
+    panel.text([-0.7, 0.7], f"distance {tried[1]:+.2f} mm", WORLD, anchor="lm", size=13)
+    panel.text([0.7, -0.6], f"α {tried[0]:+.2f} px", CAMERA, anchor="rm", size=13)
     return panel
 
 

@@ -29,8 +29,8 @@ from cvnotes.show.explorations.boards import (
 from cvnotes.show.explorations.matrices import SHIFT, TURN, matrix_table
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.orbit import angles_of, round_the_board
-from cvnotes.show.explorations.paper import Panel, Paper
-from cvnotes.show.explorations.strokes import circle, cut
+from cvnotes.show.explorations.paper import Panel, Paper, circle
+from cvnotes.show.explorations.strokes import cut
 from cvnotes.show.style import CAMERA, IDEAL, MUTED, WORLD, mixed
 from cvnotes.targets import Chessboard
 
@@ -54,10 +54,8 @@ def camera_model(camera: Camera, board: Chessboard) -> Model:
         _whole("y", -reach, reach, T[1], shift.format("y")),
         _whole("z", 0, 3.2 * reach, T[2], shift.format("z")),
     )
-    about = (
-        "The picture that a camera takes of a chessboard; beside it camera and board in space, "
-        "in the frame of the board."
-    )
+    about = """The picture that a camera takes of a chessboard; beside it camera and board in space,
+    in the frame of the board."""
 
     def draw(paper: Paper, values: Values) -> Drawing:
         return _draw(_moved(camera, values), board, paper)
@@ -100,8 +98,7 @@ def _draw(camera: Camera, board: Chessboard, paper: Paper) -> Drawing:
     picture.segments(_pixels(camera, clipped_segments(ends, ends[..., 2:] - _NEAR)), _JOINTS, 1)
     complete = draw_board(picture, camera, board)
     origin = camera.project([0, 0, 0])
-    picture.mark(origin, "world", 7)
-    picture.grip("board", "the world's origin in the picture", origin, 5)
+    picture.grip("board", "the world's origin in the picture", origin, 5, "world", 7)
     space = _space(camera, board, paper, corners)
     sentence = _sentence(camera, board, complete)
     return Drawing(paper.join((picture, space)), sentence, _matrices(camera))
@@ -143,9 +140,8 @@ def _space(camera: Camera, board: Chessboard, paper: Paper, corners: Array) -> P
     below = np.where([0, 1, 0], floor[0], stands)
     shown = on_sheet(np.concatenate([floor, border, axes, below, pane, C + own, walk]))
     (x0, y0), (x1, y1) = around(shown.min(axis=0), shown.max(axis=0), _SIZE, 1.18)
-    panel = paper.panel(
-        _SIZE, (x0, x1), (y0, y1), f"space, T = {_words(camera.T)} mm: pull the camera"
-    )
+    title = f"space, T = {_words(camera.T)} mm: pull the camera"
+    panel = paper.panel(_SIZE, (x0, x1), (y0, y1), title)
     panel.polygons([on_sheet(floor)], _FLOOR)
     panel.segments(on_sheet(joints), _JOINTS, 1)
     panel.line(on_sheet(below[:2]), _SHADOW, 4)
@@ -185,9 +181,8 @@ def _draw_axes(panel: Panel, start: Array, axes: Array, names: str, colour: str)
     for axis, name in zip(axes, names, strict=True):
         ends = on_sheet(np.array([start, start + axis]))
         panel.line(ends, colour, 2)
-        panel.text(
-            ends[1] + 11 * panel.pixel * _along(panel, ends), name, colour, anchor="mm", size=14
-        )
+        beyond = ends[1] + 11 * panel.pixel * _along(panel, ends)
+        panel.text(beyond, name, colour, anchor="mm", size=14)
 
 
 def _draw_T(panel: Panel, at: Array, T: Array) -> None:
@@ -208,7 +203,7 @@ def _draw_T(panel: Panel, at: Array, T: Array) -> None:
         if np.linalg.norm(ends[1] - ends[0]) > 25 * panel.pixel:  # else there is no room
             aside = np.array([y, -x]) * (1 if across @ [y, -x] < 0 else -1)
             beside = (ends[0] + ends[1]) / 2 + 16 * panel.pixel * aside
-            panel.text(beside, f"{name} {step:.0f}".replace("-", "−"), CAMERA, anchor="mm", size=14)
+            panel.text(beside, f"{name} {step:.0f}", CAMERA, anchor="mm", size=14)
 
 
 def _along(panel: Panel, ends: Array) -> Array:
@@ -218,10 +213,8 @@ def _along(panel: Panel, ends: Array) -> Array:
 
 
 def _sentence(camera: Camera, board: Chessboard, complete: bool) -> str:
-    said = (
-        f"T = {_words(camera.T)} mm is where the camera sees the world's origin; the camera stands "
-        f"at C = −RᵀT = {_words(camera.centre)} mm."
-    )
+    said = f"""T = {_words(camera.T)} mm is where the camera sees the world's origin; the camera
+    stands at C = −RᵀT = {_words(camera.centre)} mm."""
     if not complete:
         return f"{said} The part of the board behind the camera has no image."
     if camera.centre[2] > 0:
@@ -239,6 +232,4 @@ def _matrices(camera: Camera) -> str:
 
 
 def _words(x: Array) -> str:
-    return f"({', '.join(f'{value:.0f}' for value in (x.round() + 0.0).tolist())})".replace(
-        "-", "−"
-    )
+    return f"({', '.join(f'{value:.0f}' for value in (x.round() + 0.0).tolist())})"

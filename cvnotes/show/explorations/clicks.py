@@ -10,13 +10,11 @@ from cvnotes.camera import Camera, look_at
 from cvnotes.pictures import blocks, course, render_scene
 from cvnotes.projective import from_homogeneous, to_homogeneous
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
-from cvnotes.show.explorations.paper import Drawn, Panel, Paper
-from cvnotes.show.explorations.strokes import circle
+from cvnotes.show.explorations.paper import Drawn, Panel, Paper, circle
 from cvnotes.show.style import ESTIMATED, FAINT, MUTED, mixed
 
-_CAMERA = Camera(
-    course.camera().A, look_at([1200, -8000, 2000], [700, -1000, 12800]), size=(640, 480)
-)
+_POSE = look_at([1200, -8000, 2000], [700, -1000, 12800])
+_CAMERA = Camera(course.camera().A, _POSE, size=(640, 480))
 _ENDS = np.array([[0, 1, 4, 5, 2, 3], [0, 2, 1, 3, 5, 7], [0, 4, 1, 5, 3, 7]])  # along X, Y and Z
 _EDGES = _CAMERA.project(blocks().vertices[_ENDS]).reshape(3, 3, 2, 2)
 _SQUARE, _C = np.array([1, 800 / 804]), _CAMERA.A[:2, 2]
@@ -31,18 +29,15 @@ _DRAWS, _FIRST = 200, 14.4  # how often one clicks; about so many px does c scat
 def clicks_model() -> Model:
     """Make the model of the chapter's nine edges, clicked two hundred times with errors."""
     settings = (Setting("noise", "clicks (px)", 0.1, 0.8, 0.05, 0.3, "their standard deviation"),)
-    about = (
-        "A box, and far around it two hundred findings of each of its three vanishing points: "
-        "clouds that point at the box. In the middle is the cloud of the principal point, round "
-        "and small; beside it the same enlarged, with its circle and the middle of the picture."
-    )
+    about = """A box, and far around it two hundred findings of each of its three vanishing points:
+    clouds that point at the box. In the middle is the cloud of the principal point, round and
+    small; beside it the same enlarged, with its circle and the middle of the picture."""
 
     @lru_cache(maxsize=2)
     def sheet(sharpness: int) -> Drawn:
         """Put the photograph on white paper, pale, once for all values."""
-        pale = Bitmap.fromarray(
-            (0.6 * render_scene(blocks(), _CAMERA, samples=4) + 102).astype("u1")
-        )
+        photo = render_scene(blocks(), _CAMERA, samples=4)
+        pale = Bitmap.fromarray((0.6 * photo + 102).astype("u1"))
         paper = Bitmap.new("RGB", (sharpness * _SIZE[0], sharpness * _SIZE[1]), "white")
         scale = paper.width / np.ptp(_SHOWN[0])
         corner = (round(-scale * _SHOWN[0][0]), round(-scale * _SHOWN[1][0]))
@@ -51,9 +46,8 @@ def clicks_model() -> Model:
 
     def draw(paper: Paper, values: Values) -> Drawing:
         v, c, f = found(values["noise"])
-        far = paper.panel(
-            _SIZE, *_SHOWN, f"200 measurements, their scatter {_TIMES} times too large"
-        )
+        title = f"200 measurements, their scatter {_TIMES} times too large"
+        far = paper.panel(_SIZE, *_SHOWN, title)
         far.image(sheet(paper.sharpness))
         for family, true in zip(_EDGES, _TRUE, strict=True):
             far.segments([[edge[0], true] for edge in family], FAINT, 0.8)
@@ -68,17 +62,14 @@ def clicks_model() -> Model:
         close = _draw_close(paper, c)
         return Drawing(paper.join((far, close)), _sentence(values["noise"], c, f))
 
-    def pulled(_: Values, at: Array) -> Values:
-        return {"noise": float(at[0] - _C[0]) / _FIRST}
-
-    return Model("clicks", about, settings, draw, {"circle": pulled})
+    drags = {"circle": lambda _, at: {"noise": (at[0] - _C[0]) / _FIRST}}
+    return Model("clicks", about, settings, draw, drags)
 
 
 def found(noise: float) -> tuple[Array, Array, Array]:
     """Return what clicks with errors give: v (200, 3, 2), c (200, 2) and α_u (200,), in px."""
-    seen = (
-        _EDGES + noise * np.random.default_rng(2).normal(size=(_DRAWS, *_EDGES.shape))
-    ) * _SQUARE
+    errors = noise * np.random.default_rng(2).normal(size=(_DRAWS, *_EDGES.shape))
+    seen = (_EDGES + errors) * _SQUARE
     ends = to_homogeneous(seen / 100)  # numbers of one size
     lines = np.cross(ends[..., 0, :], ends[..., 1, :])
     lines = lines / np.linalg.norm(lines[..., :2], axis=-1, keepdims=True)
@@ -94,12 +85,8 @@ def found(noise: float) -> tuple[Array, Array, Array]:
 def _draw_close(paper: Paper, c: Array) -> Panel:
     """Draw the principal points at their size, the circle of their scatter, and the middle."""
     (u, v), high = _C, _REACH * _CLOSE[1] / _CLOSE[0]
-    panel = paper.panel(
-        _CLOSE,
-        (u - _REACH, u + _REACH),
-        (v - high, v + high),
-        "the principal point c alone, larger",
-    )
+    x, y = (u - _REACH, u + _REACH), (v - high, v + high)
+    panel = paper.panel(_CLOSE, x, y, "the principal point c alone, larger")
     _dots(panel, c)
     radius, middle = float(np.std(c - _C)), np.array([319.5, 239.5])
     panel.line(_C + radius * circle(90), ESTIMATED, 1.6)
@@ -112,8 +99,7 @@ def _draw_close(paper: Paper, c: Array) -> Panel:
     panel.line([[u + 12, v + 25.5], [u + 22, v + 25.5]], MUTED, 2)
     panel.text([u + 17, v + 23.9], "10 px", anchor="mm", size=12)
     at = _C + radius * np.array([1, 0])
-    panel.mark(at, "estimated", 7)
-    panel.grip("circle", "the circle, wider for worse clicks", at, 2)
+    panel.grip("circle", "the circle, wider for worse clicks", at, 2, "estimated", 7)
     return panel
 
 
@@ -122,7 +108,5 @@ def _dots(panel: Panel, places: Array) -> None:
 
 
 def _sentence(noise: float, c: Array, f: Array) -> str:
-    return (
-        f"Clicks that err by {noise:.2f} px: the principal point scatters by "
-        f"{np.std(c - _C):.1f} px along each axis, the focal length by {np.std(f):.1f} px."
-    )
+    return f"""Clicks that err by {noise:.2f} px: the principal point scatters by
+    {np.std(c - _C):.1f} px along each axis, the focal length by {np.std(f):.1f} px."""

@@ -4,8 +4,7 @@ import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
-from cvnotes.show.explorations.paper import Panel, Paper
-from cvnotes.show.explorations.strokes import circle
+from cvnotes.show.explorations.paper import Panel, Paper, circle
 from cvnotes.show.style import ESTIMATED, IDEAL, LENS, WORLD
 
 _SIZE = (400, 340)
@@ -24,15 +23,12 @@ def conic_model() -> Model:
         Setting("a", "a", -1.5, 1.5, 0.01, 0.5, "the first number of the last row of H"),
         Setting("b", "b", -1.5, 1.5, 0.01, 0.4, "the second one"),
     )
-    about = (
-        "A circle on a net of squares, and a green line; beside it what H makes of circle and net, "
-        "which takes the line to infinity. Orange is what lies beyond the line. Blue and orange "
-        "meet at the plane's horizon, a black line."
-    )
+    about = """A circle on a net of squares, and a green line; beside it what H makes of circle and
+    net, which takes the line to infinity. Orange is what lies beyond the line. Blue and orange meet
+    at the plane's horizon, a black line."""
 
     def pulled(_: Values, at: Array) -> Values:
-        a, b = (-at / max(float(at @ at), 1e-9)).tolist()
-        return {"a": a, "b": b}
+        return dict(zip("ab", -at / max(float(at @ at), 1e-9), strict=True))
 
     return Model("conic", about, settings, _draw, {"horizon": pulled})
 
@@ -65,8 +61,7 @@ def _draw(paper: Paper, values: Values) -> Drawing:
             before.polygons([circle(25) * 0.05 - n / s + x * along for x in (-half, half)], IDEAL)
         if s > 1 + 1e-9:
             _point_to_the_other_piece(after, n / np.sqrt(s), np.sqrt(s))
-        before.mark(-n / s, "world", 7)
-        before.grip("horizon", "the line that goes to infinity", -n / s, 4)
+        before.grip("horizon", "the line that goes to infinity", -n / s, 4, "world", 7)
     return Drawing(paper.join((before, after)), _sentence(n))
 
 

@@ -13,7 +13,7 @@ from cvnotes.pictures import course, desk, render_scene
 from cvnotes.pictures.scenes import DESK_LIGHT
 from cvnotes.projective import to_homogeneous
 from cvnotes.show.explorations.boards import draw_sheet, paper_and_squares, pinhole
-from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
+from cvnotes.show.explorations.model import Drag, Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Drawn, Panel, Paper
 from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, hexed, mixed
 from cvnotes.targets import refine_subpixel
@@ -84,11 +84,9 @@ def cube_model() -> Model:
         Setting("alpha", "α (px)", 600, 1700, 10, _ALPHA, "the focal length"),
         Setting("lens", "with the lens", 0, 1, 1, 1, "whether the camera's lens is used"),
     )
-    about = (
-        "A photograph of a desk with a board, and a tower that stands on the board, drawn by the "
-        "camera that was found from the board's corners. Beside it desk, tower and camera from "
-        "the side, with lines of sight to foot and top through the pane of its picture."
-    )
+    about = """A photograph of a desk with a board, and a tower that stands on the board, drawn by
+    the camera that was found from the board's corners. Beside it desk, tower and camera from the
+    side, with lines of sight to foot and top through the pane of its picture."""
 
     def draw(paper: Paper, values: Values) -> Drawing:
         camera = believed(values)
@@ -107,7 +105,7 @@ def cube_model() -> Model:
         u, v = ((0, 1080), (95, 665)) if paper.narrow else ((160, 960), (0, 810))
         shown = (np.ptp(u) // 2, np.ptp(v) // 2)  # px of the page
         title = "from the side: pull the camera, or its glass pane"
-        aside = paper.panel(shown, (u[0] - 0.5, u[1] - 0.5), (v[0] - 0.5, v[1] - 0.5), title)
+        aside = paper.picture_panel(shown, (np.ptp(u), np.ptp(v)), title, (u[0], v[0]))
         beside = _in_the_shade(photo(aside=True), _BESIDE, base, h)
         aside.image(beside[slice(*v), slice(*u)])
         _draw_tower(aside, _BESIDE, base, h)
@@ -115,8 +113,7 @@ def cube_model() -> Model:
         return Drawing(paper.join((panel, aside)), _sentence(values, off))
 
     def carried(values: Values, at: Array) -> Values:
-        x, y = on_board(believed(values), at)
-        return {"x": float(x), "y": float(y)}
+        return dict(zip("xy", on_board(believed(values), at), strict=True))
 
     def stretched(values: Values, at: Array) -> Values:
         """Make the tower as high as the place over its foot that is level with the hand."""
@@ -125,13 +122,11 @@ def cube_model() -> Model:
         seen = believed(values).project(over)
         return {"height": float(h[np.abs(seen[:, 1] - at[1]).argmin()])}
 
-    def moved(_: Values, at: Array) -> Values:
-        return {"away": -_along_the_axis(at)}
-
     def longer(values: Values, at: Array) -> Values:
         return {"alpha": _ALPHA * (_along_the_axis(at) + values["away"]) / _PANE}
 
-    drags = {"foot": carried, "top": stretched, "camera": moved, "pane": longer}
+    drags: dict[str, Drag] = {"foot": carried, "top": stretched, "pane": longer}
+    drags["camera"] = lambda _, at: {"away": -_along_the_axis(at)}
     return Model("cube", about, settings, draw, drags)
 
 
@@ -280,11 +275,7 @@ def _sentence(values: Values, off: Array) -> str:
         wrong += ["without its lens"]
     where = f"A tower {values['height']:.0f} mm high at ({values['x']:.0f}, {values['y']:.0f}) mm"
     if not wrong:
-        return (
-            f"{where}, by the camera that was found: each of its corners is where the true camera "
-            f"sees it, to {off.max():.2f} px."
-        )
-    return (
-        f"{where}, by a camera {' and '.join(wrong)}: up to {off[:4].max():.1f} px off at its "
-        f"foot, and {off[4:].max():.1f} px at its top."
-    )
+        return f"""{where}, by the camera that was found: each of its corners is where the true
+        camera sees it, to {off.max():.2f} px."""
+    return f"""{where}, by a camera {" and ".join(wrong)}: up to {off[:4].max():.1f} px off at its
+    foot, and {off[4:].max():.1f} px at its top."""

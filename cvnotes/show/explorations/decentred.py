@@ -6,9 +6,8 @@ import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.camera import Lens
-from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
-from cvnotes.show.explorations.paper import Panel, Paper
-from cvnotes.show.explorations.strokes import circle
+from cvnotes.show.explorations.model import Drawing, Model, Setting, Values, placed
+from cvnotes.show.explorations.paper import Panel, Paper, circle
 from cvnotes.show.style import CAMERA, IDEAL, LENS
 
 _SIZE, _TILTED, _X = (470, 470), (330, 260), 0.76  # px of the panels; how far both show x
@@ -28,17 +27,12 @@ def decentred_model() -> Model:
         Setting("down", "δ down", -0.2, 0.2, 0.004, 0.16, "the shift of the glass: 4 p₁"),
         Setting("right", "δ to the right", -0.2, 0.2, 0.004, 0, "the shift of the glass: 4 p₂"),
     )
-    about = (
-        "A grid through a lens whose second piece of glass, light blue, is shifted by δ: its "
-        "tangential terms alone, each point moved three times as far. A ruler shows by how much a "
-        "line across δ bows. Beside it both pieces from the side, with two rays of the centred "
-        "lens, dashed, and of the shifted one; and the grid on a tilted sensor."
-    )
+    about = """A grid through a lens whose second piece of glass, light blue, is shifted by δ: its
+    tangential terms alone, each point moved three times as far. A ruler shows by how much a line
+    across δ bows. Beside it both pieces from the side, with two rays of the centred lens, dashed,
+    and of the shifted one; and the grid on a tilted sensor."""
 
-    def pulled(_: Values, at: Array) -> Values:
-        return {"down": float(at[1]), "right": float(at[0])}
-
-    return Model("decentred", about, settings, _draw, {"glass": pulled})
+    return Model("decentred", about, settings, _draw, {"glass": placed("right", "down")})
 
 
 def decentred(p: Array, xy: Array) -> Array:
@@ -74,11 +68,8 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     lens.text(delta + lens.pixel * (12 * ahead - 22 * across), "δ", IDEAL, anchor="mm", size=19)
     lens.grip("glass", "the middle of the second piece of glass", delta, 1)
     x, y = delta.round(3) + 0.0
-    words = (
-        f"δ = ({x:g}, {y:g}), p₁ = {p[1]:.3f}, p₂ = {p[0]:.3f}: at a focal length "
-        f"of {_F} px the line across δ bows by {bows[0]:.1f} px, and by {bows[1]:.1f} px on the "
-        "tilted sensor."
-    )
+    words = f"""δ = ({x:g}, {y:g}), p₁ = {p[1]:.3f}, p₂ = {p[0]:.3f}: at a focal length of {_F} px
+    the line across δ bows by {bows[0]:.1f} px, and by {bows[1]:.1f} px on the tilted sensor."""
     side = -1 if tuple(delta[::-1]) < (0, 0) else 1  # as in the picture: down is down
     aside = _aside(paper, side * float(np.hypot(*delta)))
     return Drawing(paper.join((lens, [aside, sensor])), words)
@@ -122,14 +113,10 @@ def _point_out(panel: Panel, p: Array) -> None:
     ahead, across = _along(p)
     points = _BESIDE * np.array([across, -across, ahead])
     for point in points:
-        panel.line([[0, 0], point], "#FFFFFF", 4)
-        panel.line([[0, 0], point], IDEAL, 1.2, dash=4)
+        panel.line([[0, 0], point], IDEAL, 1.2, dash=4, rim=2.8)
     panel.arrows(points, decentred(_TIMES * p, points) - points, IDEAL, 3.5)
-    for at, aside, words in (
-        (points[0], -20 * ahead, "r²p"),
-        (points[1], -20 * ahead, "r²p"),
-        (points[2], 30 * across + 14 * ahead, "3r²p"),
-    ):
+    asides = -20 * ahead, -20 * ahead, 30 * across + 14 * ahead
+    for at, aside, words in zip(points, asides, ("r²p", "r²p", "3r²p"), strict=True):
         panel.text(at + panel.pixel * aside, words, IDEAL, anchor="mm", size=15)
 
 

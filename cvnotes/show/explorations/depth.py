@@ -10,7 +10,7 @@ from cvnotes.base import Array, Image, luma
 from cvnotes.camera import Camera, intrinsics, pose
 from cvnotes.pictures import depth_map, pixel_centres, radiance, room
 from cvnotes.pictures.meshes import from_above
-from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
+from cvnotes.show.explorations.model import Drawing, Model, Setting, Values, placed
 from cvnotes.show.explorations.paper import Drawn, Panel, Paper
 from cvnotes.show.style import ESTIMATED, IDEAL, rgb
 from cvnotes.warping import backward_warp, interpolate
@@ -189,12 +189,10 @@ def depth_model() -> Model:
         Setting("dots", "dots thrown", 0, 1, 1, 0,
                 "whether a projector between the cameras throws dots on the room"),
     )  # fmt: skip
-    about = (
-        "A room by two cameras side by side, one picture in red and the other in cyan, shifted "
-        "until what lies at one depth has no fringes. Below, the depth of each pixel that agrees "
-        "best of all up to this one, by colours; beside it what is neither floor nor ceiling, as "
-        "dots, from above."
-    )
+    about = """A room by two cameras side by side, one picture in red and the other in cyan, shifted
+    until what lies at one depth has no fringes. Below, the depth of each pixel that agrees best of
+    all up to this one, by colours; beside it what is neither floor nor ceiling, as dots, from
+    above."""
 
     def draw(paper: Paper, values: Values) -> Drawing:
         Z, dots = values["depth"], bool(values["dots"])
@@ -207,7 +205,7 @@ def depth_model() -> Model:
         plan = _plan(paper, Z, found)
         return Drawing(paper.join(([panel, below], plan)), _sentence(Z, found))
 
-    return Model("depth", about, settings, draw, {"depth": lambda _, at: {"depth": float(at[1])}})
+    return Model("depth", about, settings, draw, {"depth": placed("", "depth")})
 
 
 def _sentence(Z: float, found: Array) -> str:
@@ -217,17 +215,14 @@ def _sentence(Z: float, found: Array) -> str:
     if here.mean() < 0.05:
         return f"{said}So far hardly a pixel has a depth."
     off = np.median(np.abs(found - true_depths())[here])
-    return (
-        f"{said}So far {100 * here.mean():.0f} of 100 pixels have a depth; half of these are off "
-        f"by less than {off:.0f} mm."
-    )
+    return f"""{said}So far {100 * here.mean():.0f} of 100 pixels have a depth; half of these are
+    off by less than {off:.0f} mm."""
 
 
 def _plan(paper: Paper, Z: float, found: Array) -> Panel:
     """Draw from above where what has a depth so far must be, and where it is."""
-    panel = paper.panel(
-        _PLAN, (-4150, 4650), (12_900, -620), "from above, without floor and ceiling: pull the line"
-    )
+    title = "from above, without floor and ceiling: pull the line"
+    panel = paper.panel(_PLAN, (-4150, 4650), (12_900, -620), title)
     panel.image(_dots(panel, found), smooth=False)
     for corners in from_above(room(), -1500)[0]:
         panel.line([*corners, corners[0]], IDEAL, 1)

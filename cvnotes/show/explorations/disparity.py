@@ -3,7 +3,7 @@
 import numpy as np
 
 from cvnotes.base import Array
-from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
+from cvnotes.show.explorations.model import Drawing, Model, Setting, Values, placed
 from cvnotes.show.explorations.paper import Panel, Paper
 from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, LENS, MUTED, mixed
 
@@ -21,16 +21,11 @@ def disparity_model() -> Model:
         Setting("Z", "Z (mm)", 1500, 4500, 10, 4000, "how far away"),
         Setting("sigma", "σ of d (px)", 0.05, 0.3, 0.05, 0.25, "how well the disparity is known"),
     )
-    about = (
-        "Two cameras from above that see one point, with the triangle over their base line and the "
-        "similar one over the disparity. Beside it diamonds, in which a point may lie that is 1, 2 "
-        "or 4 m away: each is four times as long as the one before. Grey is 1 % of the depth."
-    )
+    about = """Two cameras from above that see one point, with the triangle over their base line and
+    the similar one over the disparity. Beside it diamonds, in which a point may lie that is 1, 2 or
+    4 m away: each is four times as long as the one before. Grey is 1 % of the depth."""
 
-    def pulled(_: Values, at: Array) -> Values:
-        return {"X": float(at[0]), "Z": float(at[1])}
-
-    return Model("disparity", about, settings, _draw, {"point": pulled})
+    return Model("disparity", about, settings, _draw, {"point": placed("X", "Z")})
 
 
 def columns(X: float, Z: float) -> tuple[float, float]:
@@ -47,9 +42,8 @@ def triangulated(left: Array, right: Array) -> Array:
 def _draw(paper: Paper, values: Values) -> Drawing:
     X, Z, sigma = values["X"], values["Z"], values["sigma"]
     left, right = columns(X, Z)
-    panel = paper.panel(
-        (450, 390), _X, _Z, "from above, depths seven times shorter: pull the point"
-    )
+    title = "from above, depths seven times shorter: pull the point"
+    panel = paper.panel((450, 390), _X, _Z, title)
     panel.polygons(np.array([[[0.0, 0], [_BASE, 0], [X, Z]]]), _LIGHT)
     tips = np.array([left, right]) * _PLANE / _ALPHA  # mm along the planes of the pictures
     panel.polygons(np.array([[[0.0, 0], [tips[1], _PLANE], [tips[0], _PLANE]]]), _WARM)
@@ -74,8 +68,7 @@ def _draw(paper: Paper, values: Values) -> Drawing:
         panel.segments([[[x - 14, z], [x + 14, z]] for z in (0.0, top)], IDEAL, 1.2)
         panel.text([x + 12, top / 2], name, IDEAL, size=13)
     panel.polygons([_diamond(X, Z, sigma)], ESTIMATED)
-    panel.mark([X, Z], "world", 4)
-    panel.grip("point", "the point that both cameras see", [X, Z], 6)
+    panel.grip("point", "the point that both cameras see", [X, Z], 6, "world", 4)
     return Drawing(paper.join((panel, _diamonds(paper, Z, sigma))), _sentence(left, right, sigma))
 
 
@@ -98,7 +91,7 @@ def _diamonds(paper: Paper, Z: float, sigma: float) -> Panel:
         panel.polygons([np.column_stack([ends, [far, far, near, near]])], _GREY)
         panel.text([-110, z], f"{z / 1000:g} m", ink, size=13)
         error = z**2 / (_ALPHA * _BASE) * sigma
-        panel.text([_BASE + 30, z], f"± {error:.0f} mm", ink, size=13)
+        panel.text([_BASE + 30, z], f"± {error:.1f} mm", ink, size=13)
     for z, ink in depths:
         at = np.array([middle, z])
         pale = ESTIMATED if ink == ESTIMATED else mixed(ESTIMATED, "#FFFFFF", 0.45)

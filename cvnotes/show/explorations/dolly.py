@@ -5,7 +5,6 @@ from itertools import pairwise
 
 import numpy as np
 
-from cvnotes.base import Array
 from cvnotes.camera import Camera, intrinsics
 from cvnotes.pictures import render_scene, room
 from cvnotes.pictures.meshes import from_above
@@ -28,10 +27,8 @@ def dolly_model() -> Model:
     settings = (
         Setting("distance", "distance (mm)", 1500, 7000, 250, 3000, "from camera to red box"),
     )
-    about = (
-        "A red box in a room, and how wide the box and the blackboard behind it are in the "
-        "picture; beside it the room from above, with the part of it that the camera sees."
-    )
+    about = """A red box in a room, and how wide the box and the blackboard behind it are in the
+    picture; beside it the room from above, with the part of it that the camera sees."""
 
     def draw(paper: Paper, values: Values) -> Drawing:
         camera = camera_at(values["distance"])
@@ -43,16 +40,12 @@ def dolly_model() -> Model:
         for ends, width in zip(seen, widths, strict=True):
             panel.line(ends, IDEAL, 2)
             panel.text(ends.mean(axis=0) + [0, 14], f"{width:.0f} px", IDEAL, anchor="mm", size=13)
-        said = (
-            f"The camera is {values['distance'] / 1000:g} m away; with α = {alpha:g} px it sees "
-            f"{angle:.1f}°. The box is {widths[0]:.0f} px wide, the blackboard {widths[1]:.0f} px."
-        )
+        said = f"""The camera is {values["distance"] / 1000:g} m away; with α = {alpha:g} px it sees
+        {angle:.1f}°. The box is {widths[0]:.0f} px wide, the blackboard {widths[1]:.0f} px."""
         return Drawing(paper.join((panel, _plan(paper, camera, angle))), said)
 
-    def pulled(_: Values, at: Array) -> Values:
-        return {"distance": float(_FRONT - at[1])}
-
-    return Model("dolly", about, settings, draw, {"walk": pulled})
+    drags = {"walk": lambda _, at: {"distance": _FRONT - at[1]}}
+    return Model("dolly", about, settings, draw, drags)
 
 
 def camera_at(distance: float, size: tuple[int, int] = _SIZE) -> Camera:

@@ -16,13 +16,11 @@ from cvnotes.camera import Camera, Lens, intrinsics, rotation_from_vector
 from cvnotes.pictures import course, good_views, hold_at
 from cvnotes.show.explorations.boards import draw_net
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
-from cvnotes.show.explorations.paper import Panel, Paper
-from cvnotes.show.explorations.strokes import circle
+from cvnotes.show.explorations.paper import Panel, Paper, circle
 from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, LENS, MUTED, rgb
 
-_PHONE = Camera(
-    intrinsics(1180, 1176, 655, 470), lens=Lens(k=(0.08, -0.15)), size=(1280, 960)
-)  # of chapter 9
+# Of chapter 9.
+_PHONE = Camera(intrinsics(1180, 1176, 655, 470), lens=Lens(k=(0.08, -0.15)), size=(1280, 960))
 _BOARD = course.board()
 _SHOWN, _NOISE = (504, 378), 0.1  # px
 _BARS, _CURVE = (360, 178), (360, 170)
@@ -43,24 +41,15 @@ class _Known(NamedTuple):
 
 def eleventh_model() -> Model:
     """Make the model of ten pictures, and of an eleventh that has not been taken."""
+    nearer = "positive: its outer edge comes nearer; in the middle there is none"
     settings = (
         Setting("u", "u (px)", 100, 1180, 10, 820, "where the board's middle is held"),
         Setting("v", "v (px)", 80, 880, 10, 580, "where the board's middle is held"),
-        Setting(
-            "tilt",
-            "tilt of outer edge (°)",
-            -45,
-            45,
-            5,
-            0,
-            "positive: its outer edge comes nearer; in the middle there is none",
-        ),
+        Setting("tilt", "tilt of outer edge (°)", -45, 45, 5, 0, nearer),
     )
-    about = (
-        "The picture of a camera, the paler the better a pixel of it is known from ten pictures "
-        "of a board and one more, which is drawn; beside it which part of each standard deviation "
-        "the new picture leaves, and below it what is left of that of k₂ at each tilt."
-    )
+    about = """The picture of a camera, the paler the better a pixel of it is known from ten
+    pictures of a board and one more, which is drawn; beside it which part of each standard
+    deviation the new picture leaves, and below it what is left of that of k₂ at each tilt."""
     drags = {
         "board": lambda _, at: {"u": float(at[0]), "v": float(at[1])},
         "left": lambda _, at: {"tilt": float(at[0])},
@@ -170,8 +159,6 @@ def _curve(paper: Paper, values: Values, left: float) -> Panel:
 
 
 def _sentence(left: Array, before: Array, after: Array) -> str:
-    return (
-        f"With this picture {left[5]:.2f} of the standard deviation of k₂ would be left, and "
-        f"{left[0]:.2f} of that of αᵤ. The worst corner of the picture is known to "
-        f"{before.max():.2f} px now, and then to {after.max():.2f}."
-    )
+    return f"""With this picture {left[5]:.2f} of the standard deviation of k₂ would be left, and
+    {left[0]:.2f} of that of αᵤ. The worst corner of the picture is known to {before.max():.2f} px
+    now, and then to {after.max():.2f}."""

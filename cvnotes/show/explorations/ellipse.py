@@ -4,8 +4,7 @@ import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
-from cvnotes.show.explorations.paper import Panel, Paper, Range
-from cvnotes.show.explorations.strokes import circle
+from cvnotes.show.explorations.paper import Panel, Paper, Range, circle
 from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED
 
 _FULL = np.array([[1.6, 0.9], [0.5, 1.1]])
@@ -24,11 +23,8 @@ def ellipse_model() -> Model:
         Setting("parallel", "rows parallel", 0, 1, 0.05, 0, "1: the second row says nothing new"),
     )
     about = "A vector h on the circle of all that have the length 1, and D h on an ellipse."
-
-    def pulled(_: Values, at: Array) -> Values:
-        return {"angle": float(np.degrees(np.arctan2(-at[1], at[0])) % 180)}
-
-    return Model("ellipse", about, settings, _draw, {"h": pulled})
+    drags = {"h": lambda _, at: {"angle": np.degrees(np.arctan2(-at[1], at[0])) % 180}}
+    return Model("ellipse", about, settings, _draw, drags)
 
 
 def matrix(parallel: float) -> Array:
@@ -41,9 +37,8 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     h = np.array([np.cos(a), np.sin(a)])
     _, s, Vt = np.linalg.svd(D)
     Vt = Vt * np.where(Vt[:, 1:] < 0, -1, 1)  # v and −v are as good: take the upper one
-    left = _round(
-        paper, ("all h of length 1; rows r₁ and r₂ of D", (-1.3, 1.95)), (np.eye(2), Vt, h), ""
-    )
+    title = "all h of length 1; rows r₁ and r₂ of D"
+    left = _round(paper, (title, (-1.3, 1.95)), (np.eye(2), Vt, h), "")
     # Rows that nearly lie on each other share a name.
     names = ("r₁, r₂", "") if values["parallel"] > 0.7 else ("r₁", "r₂")
     for name, row in zip(names, D, strict=True):
@@ -54,11 +49,10 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     long = float(np.linalg.norm(D @ h))
     said = f"The length of D h is {long:.2f}. "
     if s[1] < 1e-9:
-        return Drawing(paper.join((left, right)), f"{said}For v₂ it is 0: D v₂ = 0.")
-    return Drawing(
-        paper.join((left, right)),
-        f"{said}The longest is σ₁ = {s[0]:.2f}, the shortest σ₂ = {s[1]:.2f}.",
-    )
+        said += "For v₂ it is 0: D v₂ = 0."
+    else:
+        said += f"The longest is σ₁ = {s[0]:.2f}, the shortest σ₂ = {s[1]:.2f}."
+    return Drawing(paper.join((left, right)), said)
 
 
 def _round(

@@ -8,8 +8,8 @@ from cvnotes.base import Array
 from cvnotes.pictures.posters import chart
 from cvnotes.projective import apply, to_homogeneous
 from cvnotes.show.explorations.model import Drag, Drawing, Model, Setting, Values
-from cvnotes.show.explorations.paper import Panel, Paper
-from cvnotes.show.explorations.strokes import circle, cut
+from cvnotes.show.explorations.paper import Panel, Paper, circle
+from cvnotes.show.explorations.strokes import cut
 from cvnotes.show.style import ESTIMATED, FAINT, LENS, MUTED, WORLD
 
 _HIGH, _FAR = 594.0, 1e4  # mm, the height of the chart, here 1; as good as infinitely far
@@ -32,10 +32,8 @@ def entries_model() -> Model:
             zip(*(M.ravel().tolist() for M in (_LOW, _TOP, start)), strict=True), start=1
         )
     )
-    about = (
-        "A chart of letters as a homography lays it down; its edges, continued, and its first "
-        "corner show the three columns. Beside it the nine entries: what each does alone to a net."
-    )
+    about = """A chart of letters as a homography lays it down; its edges, continued, and its first
+    corner show the three columns. Beside it the nine entries: what each does alone to a net."""
 
     def pulled(k: int) -> Drag:
         def drag(_: Values, at: Array) -> Values:
@@ -109,7 +107,7 @@ def _nets(paper: Paper, H: Array) -> Panel:
             for line in (*put, *put.swapaxes(0, 1)):
                 panel.line(line, ink, width)
         panel.text(at + [6, 12], f"h{'₁₂₃₄₅₆₇₈₉'[k]}", colour, size=14)
-        panel.text(at + [100, 12], f"{value:.2f}".replace("-", "−"), MUTED, anchor="rm", size=13)
+        panel.text(at + [100, 12], f"{value:.2f}", MUTED, anchor="rm", size=13)
         left, right, down = _TRACK
         panel.line(at + [[left, down], [right, down]], FAINT, 3)
         low, top = _LOW[row, column], _TOP[row, column]

@@ -7,7 +7,7 @@ import numpy as np
 from cvnotes.base import Array, Image, luma
 from cvnotes.camera import Camera, intrinsics, pose, rotation_from_vector
 from cvnotes.pictures import radiance, room
-from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
+from cvnotes.show.explorations.model import Drawing, Model, Setting, Values, placed
 from cvnotes.show.explorations.paper import Panel, Paper
 from cvnotes.show.style import ESTIMATED, FAINT, LENS
 from cvnotes.warping import interpolate
@@ -32,14 +32,9 @@ def epipolar_model() -> Model:
         Setting("v", "v (px)", 40, 450, 1, 205, "and its row"),
         Setting("depth", "depth (mm)", _NEAREST, _FARTHEST, 50, 4000, "how far away it may be"),
     )
-    about = (
-        "Two pictures of a room; a pixel of the first, the line on which the second shows what "
-        "may lie behind this pixel, and how well a patch around both agrees, depth by depth."
-    )
-    drags = {
-        "pixel": lambda _, at: {"u": float(at[0]), "v": float(at[1])},
-        "depth": lambda _, at: {"depth": 1000 / max(float(at[0]), 1e-3)},
-    }
+    about = """Two pictures of a room; a pixel of the first, the line on which the second shows what
+    may lie behind this pixel, and how well a patch around both agrees, depth by depth."""
+    drags = {"depth": lambda _, at: {"depth": 1000 / max(at[0], 1e-3)}, "pixel": placed("u", "v")}
     return Model("epipolar", about, settings, _draw, drags)
 
 
@@ -87,8 +82,7 @@ def _draw(paper: Paper, values: Values) -> Drawing:
         pictures.append(picture)
         patches.append(_patch(paper, photo, at, f"{name}, enlarged"))
     left, right = pictures
-    left.mark(m, "ideal", 8)
-    left.grip("pixel", "a pixel of the first picture", m, 4)
+    left.grip("pixel", "a pixel of the first picture", m, 4, "ideal", 8)
     endless = cameras()[1].project(1e9 * cameras()[0].ray(m))  # beyond it, points lie behind
     right.line([endless, endless + 60 * (line[0] - line[-1])], LENS, 1.5, dash=6)
     right.text(endless + [4, -14], "∞", LENS, size=14)
@@ -104,12 +98,10 @@ def _draw(paper: Paper, values: Values) -> Drawing:
 
 def _patch(paper: Paper, photo: Image, at: Array, title: str) -> Panel:
     """Draw what one camera shows around a place, pixel by pixel."""
-    panel = paper.panel(
-        (184, 184), (-_PATCH - 0.5, _PATCH + 0.5), (-_PATCH - 0.5, _PATCH + 0.5), title
-    )
-    panel.image(
-        np.rint(interpolate(photo, at + _AROUND)).clip(0, 255).astype(np.uint8), smooth=False
-    )
+    n = 2 * _PATCH + 1
+    panel = paper.picture_panel((184, 184), (n, n), title, (-_PATCH, -_PATCH))
+    patch = np.rint(interpolate(photo, at + _AROUND)).clip(0, 255).astype(np.uint8)
+    panel.image(patch, smooth=False)
     panel.mark([0, 0], "ideal", 6)
     return panel
 
@@ -129,12 +121,8 @@ def _strip(paper: Paper, m: Array, depth: float) -> Panel:
 def _curve(paper: Paper, cost: Array, depth: float, now: float) -> Panel:
     """Draw by how much both patches differ, for each depth; equal steps are equal disparities."""
     top = max(_LEAST, 1.18 * float(cost.max()))
-    panel = paper.panel(
-        (_WIDTH, _HIGH[1]),
-        _AXIS,
-        (top, -0.25 * top),
-        "RMS of the difference: pull the cross",
-    )
+    title = "RMS of the difference: pull the cross"
+    panel = paper.panel((_WIDTH, _HIGH[1]), _AXIS, (top, -0.25 * top), title)
     for metres in (2, 3, 4, 5, 7, 10, 20):
         panel.line([[1 / metres, 0], [1 / metres, top]], FAINT, 0.5)
         panel.text([1 / metres, -0.13 * top], f"{metres} m", anchor="mm", size=10)
@@ -142,8 +130,7 @@ def _curve(paper: Paper, cost: Array, depth: float, now: float) -> Panel:
     most = float(cost.max())
     panel.segments([[[panel.x[0], y], [panel.x[1], y]] for y in (0, most)], FAINT, 0.5)
     panel.text([panel.x[1] + 0.006, most - 0.13 * top], f"{most:.0f} grey levels", anchor="rm")
-    panel.mark([1000 / depth, now], "estimated", 7)
-    panel.grip("depth", "how far away it may be", [1000 / depth, now], 4)
+    panel.grip("depth", "how far away it may be", [1000 / depth, now], 4, "estimated", 7)
     return panel
 
 

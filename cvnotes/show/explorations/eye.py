@@ -5,7 +5,7 @@ import numpy.typing as npt
 
 from cvnotes.base import Array
 from cvnotes.camera import Camera, intrinsics, pose, rotation_from_angles
-from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
+from cvnotes.show.explorations.model import Drawing, Model, Setting, Values, placed
 from cvnotes.show.explorations.paper import Panel, Paper
 from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, MUTED, mixed
 
@@ -26,11 +26,9 @@ def eye_model() -> Model:
         Setting("tilt", "tilt (°)", 0, 12, 0.1, 3.4, "how far the axis leads down"),
         Setting("roll", "roll (°)", -25, 25, 0.1, 7.8, "how far the camera is turned about it"),
     )
-    about = (
-        "A railway with poles, seen by a camera that is tilted and rolled, its horizon, and the "
-        "way from the principal point c straight to it; beside it the same from the side. Once the "
-        "eye rises, green marks on four poles are as high."
-    )
+    about = """A railway with poles, seen by a camera that is tilted and rolled, its horizon, and
+    the way from the principal point c straight to it; beside it the same from the side. Once the
+    eye rises, green marks on four poles are as high."""
 
     def draw(paper: Paper, values: Values) -> Drawing:
         height, tilt, roll = values["height"], *np.radians([values["tilt"], values["roll"]])
@@ -40,19 +38,12 @@ def eye_model() -> Model:
         if _marked(height):
             picture.mark(camera.project([[_ROW, -height, z] for z in _POLES[:_MARKED]]), "world", 5)
         _draw_way(picture, tilt, roll)
-        side = paper.panel(
-            (330, 330),
-            (-18, 100),
-            (8.6, -0.8),
-            "from the side (m), heights stretched: pull the eye",
-        )
+        title = "from the side (m), heights stretched: pull the eye"
+        side = paper.panel((330, 330), (-18, 100), (8.6, -0.8), title)
         _draw_side(side, height)
         return Drawing(paper.join((picture, side)), _sentence(height, values["tilt"]))
 
-    def raised(_: Values, at: Array) -> Values:
-        return {"height": float(at[1])}
-
-    return Model("eye", about, settings, draw, {"height": raised, "horizon": _pulled})
+    return Model("eye", about, settings, draw, {"height": placed("", "height"), "horizon": _pulled})
 
 
 def _pulled(_: Values, at: Array) -> Values:

@@ -17,8 +17,9 @@ from cvnotes.camera import Camera, Lens, move, pose, rotation_from_vector
 from cvnotes.homography import dlt
 from cvnotes.pictures import course
 from cvnotes.show.explorations.boards import around, draw_measured, draw_sheet, paper_and_squares
-from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
+from cvnotes.show.explorations.model import Drawing, Model, Setting, Values, placed
 from cvnotes.show.explorations.paper import Panel, Paper
+from cvnotes.show.space.directions import onto
 from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, LENS, WORLD, mixed
 
 _STEPS = 3
@@ -27,7 +28,7 @@ _ROOM, _PHOTO, _CURVE = (430, 372), (394, 200), (394, 144)  # px
 _FLOOR, _TILES, _JOINTS, _SHADOW = 190.0, "#EFE7D9", "#FBFAF7", "#E0D8CB"  # mm below the camera
 _PANE = 60 * np.array([[-1, -0.75, 2.2], [1, -0.75, 2.2], [1, 0.75, 2.2], [-1, 0.75, 2.2]])
 _ROUND = [0, 1, 2, 3, 0]
-_VIEW = rotation_from_vector([0.45, 0, 0]) @ rotation_from_vector([0, 0.95, 0])  # from the side
+_from_aside = onto((rotation_from_vector([0.45, 0, 0]) @ rotation_from_vector([0, 0.95, 0]))[:2])
 
 
 class Finding:
@@ -90,13 +91,11 @@ def finding_model() -> Model:
         Setting("step", "step", 0, _STEPS, 0.05, 0, "steps of the refinement, parts of them too"),
         Setting("photograph", "photograph", 0, n, 1, 0, "which of the twelve photographs"),
     )
-    about = (
-        "A camera in a room and its twelve boards, where they stood and where they are found, on "
-        "the way from the closed form to the answer. Beside them the misses of one photograph, and "
-        "how far all corners are missed: 3.73 px at the start, 0.374, 0.028 and 0.008 px then."
-    )
+    about = """A camera in a room and its twelve boards, where they stood and where they are found,
+    on the way from the closed form to the answer. Beside them the misses of one photograph, and how
+    far all corners are missed: 3.73 px at the start, 0.374, 0.028 and 0.008 px then."""
 
-    drags = {"step": lambda _, at: {"step": float(at[0])}}
+    drags = {"step": placed("step")}
     return Model("finding", about, settings, partial(_draw, finding), drags)
 
 
@@ -106,12 +105,10 @@ def _draw(finding: Finding, paper: Paper, values: Values) -> Drawing:
     found, true = finding.poses(step), course.poses()
     column = [_photo(paper, finding, i, misses[i]), _curve(paper, finding, step)]
     off = np.linalg.norm((found - true)[:, :3, 3], axis=-1).max()
-    sentence = (
-        f"After {step:g} of {_STEPS} steps the boards are misplaced by up to {off:.2g} mm, "
-        f"and k₁ = {camera.parameters['k1']:+.3f}; the "
-        f"{misses[..., 0].size} corners are missed by {_digits(rms(misses))} px. "
-        f"Neighbouring arrows of all photographs agree by {alike(misses):.2f} of 1."
-    )
+    sentence = f"""After {step:g} of {_STEPS} steps the boards are misplaced by up to {off:.2g} mm,
+    and k₁ = {camera.parameters["k1"]:+.3f}; the {misses[..., 0].size} corners are missed by
+    {_digits(rms(misses))} px. Neighbouring arrows of all photographs agree by {alike(misses):.2f}
+    of 1."""
     return Drawing(paper.join((_room(paper, _sheets(found), _sheets(true), i), column)), sentence)
 
 
@@ -123,9 +120,8 @@ def _sheets(G: Array) -> Array:
 
 def _room(paper: Paper, found: Array, true: Array, i: int) -> Panel:
     """Draw the camera, its boards where they stood, and orange where they are found: one whole."""
-    floor = np.array(
-        [[[x, _FLOOR, z] for z in range(-100, 801, 100)] for x in range(-300, 301, 100)]
-    )
+    x, z = np.meshgrid(range(-300, 301, 100), range(-100, 801, 100), indexing="ij")
+    floor = np.stack([x, np.full_like(x, _FLOOR), z], axis=-1)
     whole = np.array([floor[0, 0], floor[0, -1], floor[-1, -1], floor[-1, 0]])
     shown = _from_aside(np.concatenate([whole, true.reshape(-1, 3)]))
     (left, top), (right, bottom) = around(shown.min(0), shown.max(0), _ROOM, 1.02)
@@ -141,9 +137,8 @@ def _room(paper: Paper, found: Array, true: Array, i: int) -> Panel:
     panel.segments([[eye, corner] for corner in _from_aside(true[i])], CAMERA, 0.8)
     G = course.poses()[i]
     draw_sheet(panel, *(_from_aside(move(G, each)) for each in paper_and_squares(course.board())))
-    for k, (boards, ink, word) in enumerate(
-        ((true, WORLD, "as it stood"), (found, ESTIMATED, "as it is found"))
-    ):
+    both = (true, WORLD, "as it stood"), (found, ESTIMATED, "as it is found")
+    for k, (boards, ink, word) in enumerate(both):
         panel.line(_from_aside(boards[i])[_ROUND], ink, 2.4)
         at = [left + 12 * panel.pixel, top + (18 + 22 * k) * panel.pixel]
         panel.text(at, word, ink, size=15)
@@ -153,11 +148,6 @@ def _room(paper: Paper, found: Array, true: Array, i: int) -> Panel:
     return panel
 
 
-def _from_aside(W: Array) -> Array:
-    """Project points (..., 3) onto the sheet (..., 2), all parallel."""
-    return np.asarray(W @ _VIEW[:2].T)
-
-
 def _photo(paper: Paper, finding: Finding, i: int, misses: Array) -> Panel:
     """Draw a photograph's corners, with arrows to where they are predicted, enlarged."""
     m = finding.m[i]
@@ -165,9 +155,8 @@ def _photo(paper: Paper, finding: Finding, i: int, misses: Array) -> Panel:
     times = _LONGEST * np.ptp(m, axis=0).max() / np.linalg.norm(misses, axis=-1).max()
     tens = 10 ** np.floor(np.log10(times))
     times = tens * np.rint(times / tens)  # a number of one digit, and noughts
-    panel = paper.panel(
-        _PHOTO, (low[0], high[0]), (low[1], high[1]), f"photograph {i}: its misses × {times:.0f}"
-    )
+    title = f"photograph {i}: its misses × {times:.0f}"
+    panel = paper.panel(_PHOTO, (low[0], high[0]), (low[1], high[1]), title)
     draw_measured(panel, m, course.board())
     panel.arrows(m, -times * misses, ESTIMATED, 1.2)
     return panel
@@ -186,9 +175,8 @@ def alike(misses: Array) -> float:
 
 def _curve(paper: Paper, finding: Finding, step: float) -> Panel:
     """Draw the RMS over the steps, with a logarithmic scale."""
-    panel = paper.panel(
-        _CURVE, (-0.35, _STEPS + 0.5), (1.3, -2.9), "RMS of all corners (px) against steps"
-    )
+    title = "RMS of all corners (px) against steps"
+    panel = paper.panel(_CURVE, (-0.35, _STEPS + 0.5), (1.3, -2.9), title)
     for power in range(-2, 2):
         panel.segments([[[panel.x[0], power], [panel.x[1], power]]], "#DDDDDD", 0.5)
         panel.text([panel.x[0] + 0.04, power], f"{10.0**power:g}", size=12)
@@ -200,6 +188,5 @@ def _curve(paper: Paper, finding: Finding, step: float) -> Panel:
         by, anchor = ((0.13, 0.12), "ls") if k < _STEPS else ((0.04, 0.26), "ms")
         panel.text(at + by, _digits(10 ** float(at[1])), IDEAL, anchor=anchor)
     here = [step, np.interp(step, *way.T)]
-    panel.mark(here, "estimated", 7)
-    panel.grip("step", "the step, to be moved along the curve", here, 4)
+    panel.grip("step", "the step, to be moved along the curve", here, 4, "estimated", 7)
     return panel

@@ -27,10 +27,8 @@ def fisheye_model() -> Model:
         Setting("right", "to the right (°)", -80, 80, 1, -25, "where to look"),
         Setting("up", "upwards (°)", -60, 40, 1, -10, "where to look"),
     )
-    about = (
-        "A room through a fisheye that sees 220°, with the outline of a pinhole's view; beside it "
-        "this view, made of the fisheye's pixels."
-    )
+    about = """A room through a fisheye that sees 220°, with the outline of a pinhole's view; beside
+    it this view, made of the fisheye's pixels."""
     return Model("fisheye", about, settings, _draw, {"view": _pulled})
 
 
@@ -48,12 +46,7 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     seen = backward_warp(_photograph(), lambda m: shown_at(to_homogeneous(m) @ back.T), size=size)
     view = paper.panel(_VIEW, (0, 1), (0, 1), "a pinhole's view, out of the fisheye's picture")
     view.image(seen.astype(np.uint8))
-    turn = np.linspace(-1, 1, 41)
-    x, y = (
-        np.r_[turn, turn, 0 * turn + 1, 0 * turn - 1],
-        np.r_[0 * turn + 1, 0 * turn - 1, turn, turn],
-    )
-    border = np.stack([x * _VIEW[0] / 2, y * _VIEW[1] / 2, f + 0 * x], axis=-1) @ R.T
+    border = _border(f, R)
     beyond = bool((border[:, 2] < np.cos(_WIDTH / 2) * np.linalg.norm(border, axis=1)).any())
     return Drawing(paper.join((photo, view)), _sentence(fov, f, beyond))
 
@@ -78,28 +71,28 @@ def _photograph() -> Drawn:
     return picture
 
 
+def _border(f: float, R: Array) -> Array:
+    """Return the rays (n, 3) around a view."""
+    along, one = np.linspace(-1, 1, 41), np.ones(41)
+    x, y = np.r_[along, one, -along, -one], np.r_[-one, along, one, -along]
+    return np.asarray(np.stack([x * _VIEW[0] / 2, y * _VIEW[1] / 2, f + 0 * x], axis=-1) @ R.T)
+
+
 def _outline(panel: Panel, f: float, R: Array) -> None:
     """Draw what the view sees, and the circle of what lies exactly beside the fisheye."""
     phi = np.linspace(0, 2 * np.pi, 181)
     panel.line(shown_at(np.stack([np.cos(phi), np.sin(phi), 0 * phi], -1)), "white", 1.2, dash=5)
     below = shown_at(np.array([0.0, -1, 0])) + [0, 5 * panel.pixel]
     panel.text(below, "90° from the axis", MUTED, anchor="ma", size=12)
-    along, one = np.linspace(-1, 1, 41), np.ones(41)
-    x, y = np.r_[along, one, -along, -one], np.r_[-one, along, one, -along]
-    border = np.stack([x * _VIEW[0] / 2, y * _VIEW[1] / 2, f + 0 * x], axis=-1)
-    for colour, width in (("white", 5), (ESTIMATED, 2.6)):
-        panel.line(shown_at(border @ R.T), colour, width)
+    panel.line(shown_at(_border(f, R)), ESTIMATED, 2.6, rim=2.4)
     ahead = shown_at(R[:, 2])
-    panel.mark(ahead, "ideal", 9)
-    panel.grip("view", "where to look", ahead, 6)
+    panel.grip("view", "where to look", ahead, 6, "ideal", 9)
 
 
 def _sentence(fov: float, f: float, beyond: bool) -> str:
     corner = np.hypot(*_VIEW) / 2 / f  # tan of its angle from the middle
     needed = 2 * _F * np.tan(np.radians(fov) / 2)
-    return (
-        f"A view of {fov:g}°: in its middle a pixel of the fisheye becomes {f / _F:.1f} pixels "
-        f"long, in its corners up to {f / _F * (1 + corner**2):.1f}. A pinhole camera as sharp as "
-        f"the fisheye in the middle needs a sensor {needed:,.0f} px wide; for 180° none is enough."
-        f"{' Black: beyond the 220° that the fisheye sees.' if beyond else ''}"
-    )
+    return f"""A view of {fov:g}°: in its middle a pixel of the fisheye becomes {f / _F:.1f} pixels
+    long, in its corners up to {f / _F * (1 + corner**2):.1f}. A pinhole camera as sharp in the
+    middle, with the same f of {_F:.0f} px, needs a sensor {needed:,.0f} px wide; for 180° none is
+    enough.{" Black: beyond the 220° that the fisheye sees." if beyond else ""}"""

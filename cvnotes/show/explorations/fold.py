@@ -11,7 +11,8 @@ from cvnotes.pictures import course
 from cvnotes.show.explorations.boards import draw_net, draw_squares
 from cvnotes.show.explorations.model import Drag, Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Panel, Paper
-from cvnotes.show.explorations.strokes import circle as ring
+from cvnotes.show.explorations.paper import circle as ring
+from cvnotes.show.space.directions import onto
 from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, LENS, MUTED
 
 SIZE = (640, 480)
@@ -21,6 +22,7 @@ _EYES = (([163, 203.5, -92.5], (0, 0, -1)), ([-15, 187, -120], (0.5, 0, 0.87)))
 _SPACE, _FACE, _SIDE = (500, 420), (350, 150), (350, 242)  # px: the two stand below each other
 _SCALE = 0.62  # of the hinge, face on
 _VIEW = look_at([-850, 370, -370], [0, 0, 0], up=(0, 0, -1))[:3, :3]  # from the left, above
+on_sheet = onto(_VIEW[:2] * [1, 1, -1])  # of places (u, v, w)
 _LOWEST, _HIGHEST, _STEP = 20, 130, 0.05  # degrees, of the fold
 _MEET, _NEAR = 59.15, 0.25  # where the second half circle is met; a hand so near takes it
 _SHOWN = ((-360, 790), (-650, 316))  # x and y of the sheet on which space is drawn
@@ -122,12 +124,10 @@ def _turned_to(circle: Circle, *, side: bool = False) -> Drag:
 def fold_model() -> Model:
     """Make the model of the eye before two photographs."""
     cameras, H, circles = two_photographs()
-    about = (
-        "A photograph of a board lies flat. An eye hangs over it on a half circle about the "
-        "horizon, with lines to the vanishing points of the square's sides and of its diagonals; "
-        "and, if wanted, the same of a second photograph. Beside it the plane of horizon and eye, "
-        "with a half circle over each pair, and the eye's path from the side."
-    )
+    about = """A photograph of a board lies flat. An eye hangs over it on a half circle about the
+    horizon, with lines to the vanishing points of the square's sides and of its diagonals; and, if
+    wanted, the same of a second photograph. Beside it the plane of horizon and eye, with a half
+    circle over each pair, and the eye's path from the side."""
 
     def draw(paper: Paper, values: Values) -> Drawing:
         eye, n = circles[0].place(values["fold"]), 1 + round(values["second"])
@@ -150,11 +150,6 @@ def _sentence(H: list[Array], eye: Array) -> str:
     said += f" Photograph 2: sides {sides:.1f}°, diagonals {diagonals:.1f}°"
     near = max(abs(sides - 90), abs(diagonals - 90)) < 0.2
     return f"{said}: this is the camera." if near else f"{said}: this is not the camera."
-
-
-def on_sheet(place: Array) -> Array:
-    """Project places (u, v, w), (..., 3), in parallel onto the sheet (..., 2)."""
-    return np.asarray((place * [1, 1, -1]) @ _VIEW[:2].T)
 
 
 def behind_sheet(place: Array) -> Array:
@@ -203,17 +198,10 @@ def _eye_over_sheet(
         panel.mark(_flat(point), meaning, 5)
         if k in (0, 3):  # the outer one of each pair
             _name(panel, _flat(point), (8, 6), name, colour, "la")
-    _name(
-        panel,
-        _flat(points[3] + 0.12 * (points[3] - points[0])),
-        (-20, -3),
-        "horizon: the hinge",
-        IDEAL,
-        "rm",
-    )
+    beyond = _flat(points[3] + 0.12 * (points[3] - points[0]))
+    _name(panel, beyond, (-20, -3), "horizon: the hinge", IDEAL, "rm")
     panel.mark(on_sheet(below), "ideal", 7)
-    panel.mark(on_sheet(eye), "camera", 9)
-    panel.grip("eye", "the eye, to be turned about the horizon", on_sheet(eye), 4)
+    panel.grip("eye", "the eye, to be turned about the horizon", on_sheet(eye), 4, "camera", 9)
     _name(panel, on_sheet(eye), (24, 14), "eye", CAMERA, "lm")
     aside = on_sheet(below) + [0, 66 * panel.pixel]  # under the photograph
     panel.line(np.array([on_sheet(below), aside]), MUTED, 0.6)
@@ -240,9 +228,9 @@ def _face_on(paper: Paper, H: Array, circle: Circle, place: Array) -> Panel:
     panel.polygons([[*outer, eye]], _LID)
     panel.line(np.array([[-3000, 0], [3000, 0]]), IDEAL, 0.8, dash=5)
     turn = np.radians(np.arange(0, 181.0, 3))
-    for (name, meaning, colour), (a, b), angle, (x, anchor) in zip(
-        PAIRS, s.reshape(2, 2), angles(H, place), ((-540, "ld"), (920, "rd")), strict=True
-    ):
+    places = (-540, "ld"), (920, "rd")
+    both = zip(PAIRS, s.reshape(2, 2), angles(H, place), places, strict=True)
+    for (name, meaning, colour), (a, b), angle, (x, anchor) in both:
         thales = np.column_stack([a + b + (b - a) * np.cos(turn), abs(b - a) * np.sin(turn)]) / 2
         panel.line(shift + _SCALE * thales, colour, 0.8)
         ends = shift + _SCALE * np.array([[a, 0], [b, 0]])
@@ -271,6 +259,5 @@ def _side(paper: Paper, H: list[Array], circles: list[Circle], eye: Array) -> Pa
         for x, (_, _, colour), angle in zip((90, 480), PAIRS, angles(H[k], eye), strict=True):
             panel.text([x, row], f"{angle:.1f}°", colour, anchor="lm", size=16)
     panel.line(np.array([[eye[1], 0.0], eye[1:]]), IDEAL, 1.4, dash=3)
-    panel.mark(eye[1:], "camera", 9)
-    panel.grip("fold", "the hinge", eye[1:], 4)
+    panel.grip("fold", "the hinge", eye[1:], 4, "camera", 9)
     return panel

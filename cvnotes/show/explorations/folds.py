@@ -6,20 +6,13 @@ import numpy as np
 
 from cvnotes.base import Array, CvnotesError
 from cvnotes.calibration import constraints, intrinsics_from_b, solve_b
-from cvnotes.camera import (
-    Lens,
-    px_from_xy,
-    rotation_from_vector,
-    vector_from_rotation,
-    xy_from_px,
-)
+from cvnotes.camera import Lens, px_from_xy, rotation_from_vector, vector_from_rotation, xy_from_px
 from cvnotes.homography import dlt
 from cvnotes.pictures import course
 from cvnotes.show.explorations.boards import draw_squares
 from cvnotes.show.explorations.fold import Circle, behind_sheet, circle_of, on_sheet
-from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
-from cvnotes.show.explorations.paper import Panel, Paper
-from cvnotes.show.explorations.strokes import circle
+from cvnotes.show.explorations.model import Drawing, Model, Setting, Values, placed
+from cvnotes.show.explorations.paper import Panel, Paper, circle
 from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED, mixed
 
 _Of = tuple[float, float]  # k1, and how far the boards are turned
@@ -96,11 +89,9 @@ def folds_model() -> Model:
         Setting("turned", "boards turned", 0, 1, 0.05, 1,
                 "1: as they were photographed; 0: all parallel to the first"),
     )  # fmt: skip
-    about = (
-        "Twelve half circles, one for each photograph: all places from which it shows right "
-        "angles. Beside them what lies near the camera, enlarged, and how far they miss it, "
-        "against k₁."
-    )
+    about = """Twelve half circles, one for each photograph: all places from which it shows right
+    angles. Beside them what lies near the camera, enlarged, and how far they miss it, against
+    k₁."""
 
     def draw(paper: Paper, values: Values) -> Drawing:
         of = values["k1"], values["turned"]
@@ -109,12 +100,12 @@ def folds_model() -> Model:
         found = tangle.found(*of) / [*tangle.square, 1]
         return Drawing(paper.join(panels), _sentence(of, tangle.misses(*of), found))
 
-    return Model("folds", about, settings, draw, {"k1": lambda _, at: {"k1": float(at[0])}})
+    return Model("folds", about, settings, draw, {"k1": placed("k1")})
 
 
 def _sentence(of: _Of, misses: Array, found: Array) -> str:
     k1, turned = of
-    k = f"{k1:.3f}".replace("-", "−")
+    k = f"{k1:.3f}"
     said = f"With k₁ = {k} undone, the twelve half circles pass the camera at "
     if misses.max() >= 1:
         said += f"{misses.min():.0f} to {misses.max():.0f} px: no eye sees all right angles."

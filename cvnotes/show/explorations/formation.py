@@ -9,7 +9,7 @@ import numpy as np
 from cvnotes.base import Array
 from cvnotes.camera import Camera, intrinsics, inverse, look_at, move, xy_from_px
 from cvnotes.pictures.meshes import box, outlined
-from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
+from cvnotes.show.explorations.model import Drawing, Model, Setting, Values, placed
 from cvnotes.show.explorations.moved import part_of
 from cvnotes.show.explorations.paper import Panel, Paper
 from cvnotes.show.explorations.strokes import cut
@@ -25,7 +25,7 @@ _PLANE = 250.0  # mm: where z = 1 is drawn
 _HEIGHT, _BACK = 125.0, 80.0  # mm, of the box, and Z of its far side; Y is 0 on the floor
 _CORNER = np.array([200.0, -_HEIGHT, 0])  # mm, of the box: the one that is followed
 _EYE, _TILT = -255.0, 20.0  # mm, Y of the camera; degrees that it looks down
-_TILE, _REACH = 150.0, 1500.0  # mm: a tile, and how far there are tiles
+_TILE, _TILES_ASIDE = 150.0, 10  # mm; how many tiles there are to each side of the origin
 _NEAR, _WIDEST = 10.0, 20.0  # mm before the camera; how far from the axis on z = 1
 _SIGHT = 230.0  # mm: how far away one takes hold of the line of sight
 _LIGHT = np.array([0.55, 1, 0.35])  # how light goes down
@@ -33,7 +33,7 @@ _SHADES = 1.0, 0.5, 0.55, 0.8, 0.92, 0.7  # of front, back, left, right, top, bo
 _SKY, _FAR, _TILES, _SHADOW = "#DCE8F2", "#E8E1D4", ("#F0EADF", "#E0D8C9"), "#B5AC9A"
 _ROUND = np.linspace(-np.pi, np.pi, 361)
 _HORIZON = 1e9 * np.stack([np.sin(_ROUND), 0 * _ROUND, np.cos(_ROUND)], axis=1)
-_WEDGE, _JOINTS = "#DDEFFA", "#DEDEDE"
+_WEDGE = "#D3E9F7"
 
 
 def formation_model() -> Model:
@@ -45,20 +45,16 @@ def formation_model() -> Model:
         Setting("turn", "turn (°)", -80, 80, 0.5, -30, "of the camera on the spot, to the right"),
         Setting("alpha", "α (px)", 600, 1200, 10, 800, "the focal length"),
     )
-    about = (
-        "A box on a floor, four times: from above in the world, with a camera; from above in the "
-        "camera's frame; divided by z, on the plane z = 1; and in the picture. One corner of the "
-        "box is followed, with its numbers. What is still to come is pale."
-    )
-
-    def looked(values: Values, at: Array) -> Values:
-        return {"turn": float(np.degrees(np.arctan2(*(at - [values["X"], values["Z"]]))))}
-
-    drags = {
-        "camera": lambda _, at: {"X": float(at[0]), "Z": float(at[1])},
-        "line of sight": looked,
-    }
+    about = """A box on a floor, four times: from above in the world, with a camera; from above in
+    the camera's frame; divided by z, on the plane z = 1; and in the picture. One corner of the box
+    is followed, with its numbers. What is still to come is pale."""
+    drags = {"camera": placed("X", "Z"), "line of sight": looked_at}
     return Model("formation", about, settings, _draw, drags)
+
+
+def looked_at(values: Values, at: Array) -> Values:
+    """Turn a camera at X and Z towards a place that it is to look at, seen from above."""
+    return {"turn": np.degrees(np.arctan2(*(at - [values["X"], values["Z"]])))}
 
 
 def camera_of(values: Values) -> Camera:
@@ -173,7 +169,7 @@ class Scene(NamedTuple):
     def of(cls, camera: Camera, corner: Array) -> "Scene":
         """Return what a camera sees, the box with this corner."""
         faces = faces_of(corner)
-        light, dark = (_on_plane(camera, tiles) for tiles in _tiles())
+        light, dark = (_on_plane(camera, tiles) for tiles in _tiles(_TILE))
         far = move(camera.G, _HORIZON)
         horizon = (far[:, :2] / far[:, 2:])[far[:, 2] > _NEAR]
         shadow = _on_plane(camera, faces - faces[..., 1:2] * _LIGHT)
@@ -199,24 +195,28 @@ def faces_of(corner: Array) -> Array:
     return box((0, X), (-_HEIGHT, 0), (Z, _BACK), (0, 0, 0)).faces
 
 
-@lru_cache(maxsize=1)
-def _tiles() -> tuple[Array, Array]:
+@lru_cache(maxsize=2)
+def _tiles(side: float) -> tuple[Array, Array]:
     """Return the tiles (n, 4, 3) of each of the two colours."""
-    i, j = np.indices(2 * [int(2 * _REACH / _TILE)]).reshape(2, -1, 1)
-    x, z = _TILE * (i + [0, 1, 1, 0]) - _REACH, _TILE * (j + [0, 0, 1, 1]) - _REACH
+    i, j = np.indices(2 * [2 * _TILES_ASIDE]).reshape(2, -1, 1) - _TILES_ASIDE
+    x, z = side * (i + [0, 1, 1, 0]), side * (j + [0, 0, 1, 1])
     tiles = np.stack([x, 0 * x, z], axis=-1)
     odd = ((i + j) % 2 == 1)[:, 0]
     return tiles[~odd], tiles[odd]
+
+
+def draw_floor(panel: Panel, seen: Seen, side: float = _TILE) -> None:
+    """Draw the tiles of the floor from above."""
+    for tiles, colour in zip(_tiles(side), _TILES, strict=True):
+        panel.polygons(seen(tiles), colour)
 
 
 def draw_above(panel: Panel, seen: Seen, camera: Camera, corner: Array) -> None:
     """Draw box and camera from above, and what the row of the principal point sees."""
     v0 = camera.A[1, 2]
     sides = camera.ray([[-0.5, v0], [camera.size[0] - 0.5, v0]])
-    panel.polygons(seen(camera.centre + 4000 * np.array([[0, 0, 0], *sides]))[None], _WEDGE)
-    joints = np.arange(-_REACH, _REACH + 1, _TILE)
-    ends = np.array([[[x, 0, -_REACH], [x, 0, _REACH]] for x in joints])
-    panel.segments(seen(np.concatenate([ends, ends[..., ::-1]])), _JOINTS, 0.7)
+    draw_floor(panel, seen)
+    panel.veil([seen(camera.centre + 4000 * np.array([[0, 0, 0], *sides]))], [_WEDGE])
     faces = faces_of(corner)
     panel.polygons(seen(faces - faces[..., 1:2] * _LIGHT), _SHADOW)
     draw_faces(panel, list(seen(faces)), turn=-1)
@@ -276,7 +276,7 @@ def _draw_border(plane: Panel, camera: Camera) -> None:
 
 def written(x: Array, digits: int) -> str:
     """Write numbers in brackets."""
-    return f"({', '.join(f'{number:.{digits}f}' for number in x + 0.0)})".replace("-", "−")
+    return f"({', '.join(f'{number:.{digits}f}' for number in x + 0.0)})"
 
 
 def follow(panel: Panel, place: Array, words: str, up: float = 0, over: bool = False) -> None:

@@ -28,16 +28,11 @@ _FINE = (2 * _SIZE[0], 2 * _SIZE[1])  # of the photograph that is looked up
 def frame_model() -> Model:
     """Make the model of the chapter's street, straightened, and of a new camera's picture of it."""
     settings = (Setting("f", "focal length f (px)", _NEAR, _FAR, 1, 318, "of the new camera"),)
-    about = (
-        "A street on the plane z = 1 as the lens saw it, undistorted, with its curved border and "
-        "the frame of a new camera; beside it this camera's picture, black where the frame "
-        "leaves the border, and below it how much is black and how much is lost, over f."
-    )
-
-    def resized(_: Values, at: Array) -> Values:
-        return {"f": float(_C @ _C) / max(float(_C @ at), 1.0)}
-
-    return Model("frame", about, settings, _draw, {"corner": resized})
+    about = """A street on the plane z = 1 as the lens saw it, undistorted, with its curved border
+    and the frame of a new camera; beside it this camera's picture, black where the frame leaves the
+    border, and below it how much is black and how much is lost, over f."""
+    drags = {"corner": lambda _, at: {"f": _C @ _C / max(_C @ at, 1.0)}}
+    return Model("frame", about, settings, _draw, drags)
 
 
 def _draw(paper: Paper, values: Values) -> Drawing:
@@ -56,10 +51,8 @@ def _sentence(f: float, black: float, lost: float) -> str:
     wide = 2 * np.degrees(np.arctan(_C / f))[0]
     gaps = "nothing" if f >= full else _percent(black)
     gone = "nothing" if f <= every else f"{_percent(lost)} of the old pixels"
-    return (
-        f"f = {f:g} px: the new camera sees {wide:.0f}° from left to right. Of its picture {gaps} "
-        f"is black; {gone} is lost."
-    )
+    return f"""f = {f:g} px: the new camera sees {wide:.0f}° from left to right. Of its picture
+    {gaps} is black; {gone} is lost."""
 
 
 def _percent(share: float) -> str:
@@ -129,14 +122,10 @@ def _plane(paper: Paper, f: float) -> Panel:
     panel.line(_seen()[2], LENS, 1.4)
     old = np.array([-_C, _C]) / _OLD
     for corners, ink, width, dash in ((old, IDEAL, 1.4, 6.0), (frame, ESTIMATED, 2.6, 0.0)):
-        around = [
-            [corners[i, 0], corners[j, 1]] for i, j in ((0, 0), (1, 0), (1, 1), (0, 1), (0, 0))
-        ]
-        panel.line(around, "#FFFFFF", width + 2)
-        panel.line(around, ink, width, dash)
+        around = corners[[0, 1, 1, 0, 0], 0], corners[[0, 0, 1, 1, 0], 1]
+        panel.line(np.transpose(around), ink, width, dash, rim=2)
     panel.text(old[0] + [8 * panel.pixel, 8 * panel.pixel], f"the old A: {_OLD} px", size=13)
-    panel.mark(frame[1], "ideal", 9)
-    panel.grip("corner", "the corner of the new frame", frame[1], 3)
+    panel.grip("corner", "the corner of the new frame", frame[1], 3, "ideal", 9)
     return panel
 
 

@@ -4,13 +4,13 @@ import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.camera import rotation_from_angles
-from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
+from cvnotes.show.explorations.model import Drawing, Model, Setting, Values, nearest
 from cvnotes.show.explorations.paper import Paper
-from cvnotes.show.space.directions import sheet, towards
+from cvnotes.show.space.directions import onto, sheet, towards
 from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED, hexed, rgb
 
 _UPRIGHT = np.array([[1, 0, 0], [0, 0, -1], [0, 1, 0]])  # z, the grey axis, points up on the sheet
-_SHEET, _TOWARDS = sheet((22, -52)) @ _UPRIGHT, towards((22, -52)) @ _UPRIGHT
+_on_sheet, _TOWARDS = onto(sheet((22, -52)) @ _UPRIGHT), towards((22, -52)) @ _UPRIGHT
 _RADII, _PIECES = (1.0, 0.8, 0.6), 72
 _HELD, _BARED = 0.9, 0.72  # where the orange axis is held, and ends: before the blue ring
 _COLOURS = MUTED, LENS, ESTIMATED
@@ -25,22 +25,17 @@ def gimbal_model() -> Model:
     settings = (
         Setting("x", "angle x (°)", -180, 180, 5, 20, "turns the orange ring about its own axis"),
         Setting("y", "angle y (°)", -90, 90, 5, 30, "the middle one: turns the blue ring"),
-        Setting(
-            "z", "angle z (°)", -180, 180, 5, 0, "turns all about the grey axis, which is fixed"
-        ),
-    )
-    about = (
-        "Three rings, each of which turns in the one outside of it, with their axes, and a dart in "
-        "the innermost."
-    )
+        Setting("z", "angle z (°)", -180, 180, 5, 0,
+                "turns all about the grey axis, which is fixed"),
+    )  # fmt: skip
+    about = """Three rings, each of which turns in the one outside of it, with their axes, and a
+    dart in the innermost."""
 
-    def pulled(values: Values, at: Array) -> Values:
-        """Choose the middle angle whose orange axis ends nearest to the hand."""
-        tried = np.arange(-90, 91, 5.0)
-        ends = np.array([_on_sheet(axes({**values, "y": y})[2] * _HELD) for y in tried])
-        return {"y": float(tried[np.linalg.norm(ends - at, axis=1).argmin()])}
+    def ends(values: Values, tried: Array) -> Array:
+        return np.array([_on_sheet(axes({**values, "y": y})[2] * _HELD) for y in tried])
 
-    return Model("gimbal", about, settings, _draw, {"orange axis": pulled})
+    drags = {"orange axis": nearest("y", np.arange(-90, 91, 5.0), ends)}
+    return Model("gimbal", about, settings, _draw, drags)
 
 
 def axes(values: Values) -> Array:
@@ -50,16 +45,11 @@ def axes(values: Values) -> Array:
     return np.array([[0, 0, 1.0], about_z[:, 1], about_zy[:, 0]])
 
 
-def _on_sheet(W: Array) -> Array:
-    return np.asarray(W @ _SHEET.T)
-
-
 def _draw(paper: Paper, values: Values) -> Drawing:
     outer, middle, inner = turns = axes(values)
     R = rotation_from_angles(*np.radians([values["x"], values["y"], values["z"]]))
-    panel = paper.panel(
-        (480, 400), (-1.68, 1.68), (-1.4, 1.4), "each ring turns in the one outside"
-    )
+    title = "each ring turns in the one outside"
+    panel = paper.panel((480, 400), (-1.68, 1.68), (-1.4, 1.4), title)
     faces, paints = [], []
     rings = (*zip("zyx", turns, (middle, inner, R[:, 1]), _RADII, _COLOURS, strict=True),)
     for name, axis, side, r, colour in rings:
@@ -82,8 +72,7 @@ def _draw(paper: Paper, values: Values) -> Drawing:
         at = _on_sheet((r + 0.3) * axis)
         panel.text(at + [0.14 if at[0] > -0.2 else -0.14, 0], name, colour, anchor="mm", size=15)
     end = _on_sheet(inner * _HELD)
-    panel.mark(end, "estimated", 6)
-    panel.grip("orange axis", "the end of the orange axis", end, 8)
+    panel.grip("orange axis", "the end of the orange axis", end, 8, "estimated", 6)
     apart = np.degrees(np.arccos(min(abs(float(outer @ inner)), 1)))
     return Drawing(paper.join((panel,)), _sentence(values["y"], apart))
 
@@ -102,15 +91,12 @@ def _bar(ends: Array) -> Array:
     aside = np.cross(ends[1] - ends[0], _TOWARDS)
     aside = 0.025 * aside / max(float(np.linalg.norm(aside)), 1e-9)
     along = ends[0] + np.linspace(0, 1, 5)[:, None] * (ends[1] - ends[0])
-    return np.stack(
-        [along[:-1] - aside, along[:-1] + aside, along[1:] + aside, along[1:] - aside], 1
-    )
+    start, end = along[:-1], along[1:]
+    return np.stack([start - aside, start + aside, end + aside, end - aside], 1)
 
 
 def _sentence(y: float, apart: float) -> str:
     if abs(y) == 90:
-        return (
-            "The orange axis lies in the grey one: the angles x and z turn the dart about one "
-            "line, and only two directions of turning are left."
-        )
+        return """The orange axis lies in the grey one: the angles x and z turn the dart about one
+        line, and only two directions of turning are left."""
     return f"The grey and the orange axis are {apart:.0f}° apart."

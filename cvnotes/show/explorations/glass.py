@@ -9,9 +9,8 @@ from cvnotes.base import Array
 from cvnotes.camera import Camera, intrinsics, look_at, pose
 from cvnotes.pictures import render_scene, room
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
-from cvnotes.show.explorations.paper import Drawn, Panel, Paper
+from cvnotes.show.explorations.paper import Drawn, Panel, Paper, circle
 from cvnotes.show.explorations.rail import beyond, laid
-from cvnotes.show.explorations.strokes import circle
 from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, mixed
 
 _SPACE, _BESIDE, _WORDS, _FINER = (470, 360), (330, 248), (330, 84), 2
@@ -28,10 +27,9 @@ def glass_model() -> Model:
         Setting("x", "x (m)", 0.5, 1.2, 0.1, 0.8, "how far the ball is to the right of the axis"),
         Setting("z", "z (m)", 1.6, 5, 0.1, 2, "its depth"),
     )
-    about = (
-        "A camera in a room, from outside, with its picture on a glass 1 m before it, and a line "
-        "of sight from a ball. Beside it the picture, and the ball's x and y, divided by its depth."
-    )
+    about = """A camera in a room, from outside, with its picture on a glass 1 m before it, and a
+    line of sight from a ball. Beside it the picture, and the ball's x and y, divided by its
+    depth."""
 
     def pulled(values: Values, at: Array) -> Values:
         row = _ASIDE.P[0] - at[0] * _ASIDE.P[2]  # the line on which the ball hangs, at the hand's u
@@ -59,9 +57,8 @@ def _draw(paper: Paper, values: Values) -> Drawing:
         said = f"{name} / z = {number:.1f} / {M[2]:.1f} = {part:.3f}"
         words.text([0.5, row], said, IDEAL, anchor="mm", size=19)
     told = f"({M[0]:.1f}, {M[1]:.1f}, {M[2]:.1f}) m is divided by its depth, {M[2]:.1f} m"
-    return Drawing(
-        paper.join((space, [plane, words])), f"The ball at {told}: ({xy[0]:.3f}, {xy[1]:.3f}, 1)."
-    )
+    said = f"The ball at {told}: ({xy[0]:.3f}, {xy[1]:.3f}, 1)."
+    return Drawing(paper.join((space, [plane, words])), said)
 
 
 def _draw_space(panel: Panel, M: Array) -> None:

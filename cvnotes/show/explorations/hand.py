@@ -13,8 +13,7 @@ from cvnotes.base import Array, CvnotesError, points
 from cvnotes.base.writing import PathLike
 from cvnotes.files import read_photo
 from cvnotes.show.explorations.model import Drag, Drawing, Model, Setting, Values
-from cvnotes.show.explorations.paper import Drawn, Panel, Paper
-from cvnotes.show.explorations.strokes import circle
+from cvnotes.show.explorations.paper import Drawn, Panel, Paper, circle
 from cvnotes.show.guards import in_bytes
 from cvnotes.show.guards import picture as checked
 from cvnotes.show.style import ESTIMATED
@@ -200,13 +199,9 @@ def _loupe(
     sheet = np.full((high, wide, *photo.shape[2:]), 255, np.uint8)
     seen = photo[max(top, 0) : top + high, max(left, 0) : left + wide]
     sheet[max(-top, 0) :, max(-left, 0) :][: seen.shape[0], : seen.shape[1]] = seen
-    panel = paper.panel(
-        size, (left - 0.5, left + wide - 0.5), (top - 0.5, top + high - 0.5),
-        f"point {now}, enlarged",
-    )  # fmt: skip
+    panel = paper.picture_panel(size, (wide, high), f"point {now}, enlarged", (left, top))
     panel.image(sheet, smooth=False)
     for line in lines:
         panel.line(line, ESTIMATED, 1)
-    panel.mark(m[now - 1], "ideal", 9)
-    panel.grip("loupe", f"point {now}, finely", m[now - 1], _STEP / panel.pixel)
+    panel.grip("loupe", f"point {now}, finely", m[now - 1], _STEP / panel.pixel, "ideal", 9)
     return panel

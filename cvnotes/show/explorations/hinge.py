@@ -9,20 +9,17 @@ from cvnotes.camera import Camera, inverse, look_at, move
 from cvnotes.pictures import course
 from cvnotes.show.explorations.boards import draw_sheet, paper_and_squares
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
-from cvnotes.show.explorations.paper import GRID, Panel, Paper
-from cvnotes.show.explorations.strokes import circle
+from cvnotes.show.explorations.paper import Panel, Paper, circle
 from cvnotes.show.space.directions import sheet
-from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, MUTED, mixed
+from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, mixed
 from cvnotes.targets import Chessboard, TwoPlanes
 
 _BOARD, _A = Chessboard((7, 6), 25.0), course.camera().A
 _VIEW = Camera(_A, look_at([470, 40, -520], [65, 62, -75]))
-_SPACE, _CURVE, _FOUND = (520, 400), (340, 246), (340, 126)  # px
+_SPACE, _FOUND = (520, 400), (340, 400)  # px
 _OPEN, _FLAT = 90, 180  # degrees between the boards
 _NOISE, _PHOTOS = 0.1, 40  # px, of each coordinate
-_REACH = 130  # px, of α
-_LEAST, _MOST = 0.5, 180  # px: the ends of the curve's axis
-_END = 0.45  # degrees: where on the logarithmic axis no bend at all stands
+_REACH = 60  # px, of α_u
 _DEPTH = 165  # mm from the camera to its drawn picture
 _SHEET = sheet((24, -56))
 _SHOWN = ((-292, 278), (-106, 332))  # mm of the sheet
@@ -36,31 +33,24 @@ def on_sheet(W: Array) -> Array:
 def hinge_model() -> Model:
     """Make the model of a photograph of two boards on a hinge, and of how well it determines α."""
     settings = (
-        Setting("angle", "angle of the boards (°)", _OPEN, _FLAT, 1, 150, "180° is one plane"),
+        Setting("angle", "angle of the boards (°)", _OPEN, _FLAT, 1, 160, "180° is one plane"),
     )
-    about = (
-        "A camera before two boards on a hinge. Beside it, against the angle between them, on two "
-        "logarithmic axes: how exactly one photograph of both determines the focal length; and "
-        "below the focal lengths that 40 of them give, as dots."
-    )
+    about = """A camera before two boards on a hinge. Beside it a dot for each of 40 photographs of
+    them: the focal lengths that it gives, in pixels, to the right αᵤ and upwards αᵥ."""
 
     def turned(_: Values, at: Array) -> Values:
         nearest = np.linalg.norm(_way() - at, axis=1).argmin()
         return {"angle": float(_OPEN + nearest)}
 
-    def along(_: Values, at: Array) -> Values:
-        return {"angle": float(round(_FLAT - 10 ** -np.clip(at[0], -2, 1)))}
-
-    drags = {"board": turned, "angle": along}
-    return Model("hinge", about, settings, _draw, drags)
+    return Model("hinge", about, settings, _draw, {"board": turned})
 
 
 @lru_cache(maxsize=1)
 def gains() -> Array:
-    """Return by how much α_u moves with each coordinate of the corners, for 90° to 179°: (90, 168).
+    """Return by how much α_u and α_v move with each coordinate of the corners: (90, 2, 168).
 
-    Least squares find (JᵀJ)⁻¹Jᵀ n for small noise n, in all u and then all v, where J has the
-    derivatives of u = α_u x/z + u0 and v = α_v y/z + v0 by the four intrinsics and the pose.
+    For 90° to 179°. Least squares find (JᵀJ)⁻¹Jᵀ n for small noise n, in all u and then all v;
+    J has the derivatives of u = α_u x/z + u0 and v = α_v y/z + v0 by all ten unknowns.
     """
     W = [TwoPlanes(_BOARD, np.radians(angle)).points for angle in range(_OPEN, _FLAT)]
     X, Y, z = np.moveaxis(move(_VIEW.G, np.array(W)), -1, 0)
@@ -71,25 +61,27 @@ def gains() -> Array:
     J = np.concatenate(np.moveaxis(np.array([by_u, by_v]), 1, -1), axis=1)
     size = np.linalg.norm(J, axis=1, keepdims=True)  # or else much is lost to rounding
     across = (J / size).swapaxes(1, 2)
-    return np.asarray(np.linalg.solve(across @ across.swapaxes(1, 2), across)[:, 0] / size[:, :, 0])
+    return np.asarray(
+        np.linalg.solve(across @ across.swapaxes(1, 2), across)[:, :2] / size[:, 0, :2, None]
+    )
 
 
 @lru_cache(maxsize=1)
 def found() -> Array:
-    """Return α_u as 40 photographs give it (angles, 40), the same noise for each angle."""
-    noise = np.random.default_rng(0).normal(scale=_NOISE, size=(_PHOTOS, gains().shape[1]))
-    return np.asarray(_A[0, 0] + gains() @ noise.T)
+    """Return (α_u, α_v) as 40 photographs give them (angles, 40, 2), with the same noise."""
+    noise = np.random.default_rng(0).normal(scale=_NOISE, size=(_PHOTOS, gains().shape[2]))
+    return np.asarray(_A[[0, 1], [0, 1]] + noise @ gains().swapaxes(1, 2))
 
 
 @lru_cache(maxsize=1)
 def spread() -> Array:
     """Return the standard deviation of α_u for each angle, px."""
-    return np.asarray(_NOISE * np.linalg.norm(gains(), axis=1))
+    return np.asarray(_NOISE * np.linalg.norm(gains()[:, 0], axis=1))
 
 
 def _draw(paper: Paper, values: Values) -> Drawing:
     angle = round(values["angle"])
-    drawn = paper.join((_space(paper, angle), [_curve(paper, angle), _dots(paper, angle)]))
+    drawn = paper.join((_space(paper, angle), _dots(paper, angle)))
     if angle == _FLAT:
         return Drawing(
             drawn, "At 180° both boards are one plane: the photograph does not determine αᵤ."
@@ -140,56 +132,23 @@ def _space(paper: Paper, angle: int) -> Panel:
     return panel
 
 
-def _at(bend: float) -> float:
-    """Return where a bend stands on the axis: the smaller, the farther to the right."""
-    return -float(np.log10(max(bend, _END)))
-
-
-def _curve(paper: Paper, angle: int) -> Panel:
-    """Draw the standard deviation of α over the bend, 180° less the angle, both logarithmic."""
-    low, high = np.log10([_LEAST, _MOST])
-    left, right = _at(130), _at(0) + 0.12
-    title = "± of αᵤ (px), by the angle: each line up × 10"
-    panel = paper.panel(_CURVE, (left, right), (high, low), title)
-    for bend in (90, 45, 20, 10, 4, 2, 1):
-        panel.line([[_at(bend), low], [_at(bend), high]], GRID, 0.5)
-        panel.text([_at(bend), low + 0.1], f"{_FLAT - bend}°", anchor="md", size=12)
-    for px in (1, 10, 100):
-        panel.line([[left, np.log10(px)], [right, np.log10(px)]], GRID, 0.5)
-        panel.text([left + 0.03, np.log10(px)], f"{px}", size=12)
-    bends = np.arange(_FLAT - _OPEN, 0, -1)
-    panel.line(np.stack([-np.log10(bends), np.log10(spread())], axis=1), ESTIMATED, 2.2)
-    held = [_at(0), np.log10(130)]
-    if angle < _FLAT:
-        held = [_at(_FLAT - angle), np.log10(spread()[angle - _OPEN])]
-    panel.line([[held[0], low + 0.28], held], MUTED, 0.8)
-    panel.mark(held, "estimated", 8)
-    panel.grip("angle", "the angle between both boards", held, 3)
-    return panel
-
-
 def _dots(paper: Paper, angle: int) -> Panel:
-    """Draw what 40 photographs say of α, and the band α ± its standard deviation."""
-    alpha = _A[0, 0]
-    title = "αᵤ found in 40 photographs (px)"
-    panel = paper.panel(_FOUND, (alpha - _REACH, alpha + _REACH), (-1.1, 1.6), title)
-    panel.ticks(x=(700, 750, 800, 850, 900), size=12)
+    """Draw what 40 photographs say of α_u and α_v, and the band α_u ± its standard deviation."""
+    true, tall = _A[[0, 1], [0, 1]], _REACH * _FOUND[1] / _FOUND[0]
+    x, y = (true[0] - _REACH, true[0] + _REACH), (true[1] + tall, true[1] - tall)
+    panel = paper.panel(_FOUND, x, y, "αᵤ (right) and αᵥ (up) of 40 photographs")
     if angle == _FLAT:
-        panel.text([alpha, 0], "anything: it is not determined", IDEAL, anchor="mm", size=14)
+        panel.text(true, "anything: not determined", IDEAL, anchor="mm", size=14)
         return panel
     one = min(spread()[angle - _OPEN], _REACH)
-    band = [alpha - one, alpha + one]
-    panel.polygons(
-        [[[band[0], -1], [band[1], -1], [band[1], 1], [band[0], 1]]],
-        mixed("#FFFFFF", ESTIMATED, 0.2),
-    )
-    panel.line([[alpha, -1], [alpha, 1]], IDEAL, 1)
-    places = np.stack([found()[angle - _OPEN], np.linspace(-0.9, 0.9, _PHOTOS)], axis=1)
-    dot = 1.7 * circle(13) * [panel.pixel, 2.7 / _FOUND[1]]
-    within = np.abs(places[:, 0] - alpha) <= _REACH
-    panel.polygons(places[within, None] + dot, ESTIMATED)
-    beyond = int((~within).sum())
+    band = np.add(true, np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]) * [one, tall])
+    panel.polygons([band], mixed("#FFFFFF", ESTIMATED, 0.2))
+    panel.ticks(x=(760, 780, 800, 820, 840), y=range(740, 880, 20), size=12)
+    panel.mark(true, "ideal", 9)
+    places = found()[angle - _OPEN]
+    panel.polygons(places[:, None] + 2.5 * panel.pixel * circle(13), ESTIMATED)
+    beyond = int((np.abs(places - true) > [_REACH, tall]).any(axis=1).sum())
     if beyond:
         words = f"{beyond} of {_PHOTOS} go beyond"
-        panel.text([alpha + 0.97 * _REACH, -0.85], words, IDEAL, anchor="rm", size=13)
+        panel.text(true + [0.96, -0.84] * np.array([_REACH, tall]), words, anchor="rm", size=13)
     return panel

@@ -10,7 +10,7 @@ from cvnotes.camera import Camera, look_at
 from cvnotes.homography import dlt
 from cvnotes.pictures import chart_room, course, render_scene
 from cvnotes.projective import apply, to_homogeneous
-from cvnotes.show.explorations.model import Drag, Drawing, Model, Setting, Values
+from cvnotes.show.explorations.model import Drawing, Model, Setting, Values, placed
 from cvnotes.show.explorations.paper import Drawn, Panel, Paper
 from cvnotes.show.style import ESTIMATED, IDEAL, WORLD
 from cvnotes.warping import rectify_plane
@@ -30,10 +30,8 @@ _GRID = np.arange(-700, 701, 100)  # mm
 def homography_model() -> Model:
     """Make the model of the wall of chapter 6, with a chart and a switch on it."""
     settings = tuple(
-        Setting(
-            f"d{axis}{i}", f"corner {i} {axis}", -140, 140, 1, 0,
-            f"moves the {name} corner by so many px along {axis}",
-        )
+        Setting(f"d{axis}{i}", f"corner {i} {axis}", -140, 140, 1, 0,
+                f"moves the {name} corner by so many px along {axis}")
         for i, name in enumerate(_NAMES, start=1)
         for axis in "uv"
     )  # fmt: skip
@@ -41,20 +39,11 @@ def homography_model() -> Model:
         Setting(name, f"plus {name} (px)", 0, most, 1, start, "where the plus is, in the picture")
         for name, most, start in zip("uv", _PICTURE, _PLUS, strict=True)
     )
-    about = (
-        "A wall at a slant, with a chart whose four corners are marked, and the millimetres of the "
-        "wall as the homography of these corners lays them; beside it the wall seen straight on."
-    )
+    about = """A wall at a slant, with a chart whose four corners are marked, and the millimetres of
+    the wall as the homography of these corners lays them; beside it the wall seen straight on."""
 
-    def corner(i: int) -> Drag:
-        def pulled(_: Values, at: Array) -> Values:
-            du, dv = (at - _READ[i - 1]).tolist()
-            return {f"du{i}": du, f"dv{i}": dv}
-
-        return pulled
-
-    drags = {f"corner {i}": corner(i) for i in range(1, 5)}
-    drags["plus"] = lambda _, at: {"u": float(at[0]), "v": float(at[1])}
+    drags = {f"corner {i}": placed(f"du{i}", f"dv{i}", _READ[i - 1]) for i in range(1, 5)}
+    drags["plus"] = placed("u", "v")
     return Model("homography", about, settings, _draw, drags)
 
 
@@ -78,9 +67,9 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     m = _READ + [[values[f"du{i}"], values[f"dv{i}"]] for i in range(1, 5)]
     H, plus = dlt(_CHART, m), np.array([values["u"], values["v"]])
     place = apply(np.linalg.inv(H), plus)
-    (w, h), (left, top) = _PICTURE, _EDGE
-    x, y = (-left - 0.5, w + left - 0.5), (-top - 0.5, h + top - 0.5)
-    picture = paper.panel(_SHOWN, x, y, "the wall, and its squares of 100 mm")
+    framed = _PICTURE[0] + 2 * _EDGE[0], _PICTURE[1] + 2 * _EDGE[1]
+    title = "the wall, and its squares of 100 mm"
+    picture = paper.picture_panel(_SHOWN, framed, title, (-_EDGE[0], -_EDGE[1]))
     picture.image(_shown(paper.sharpness))
     _draw_grid(picture, H)
     _draw_horizon(picture, H)
@@ -104,7 +93,7 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     said = [_sentence(place)]
     for i, (du, dv) in enumerate(m - _READ, start=1):
         if du or dv:
-            said.append(f"Corner {i} is pulled by ({du:.0f}, {dv:.0f}) px.".replace("-", "−"))
+            said.append(f"Corner {i} is pulled by ({du:.0f}, {dv:.0f}) px.")
     return Drawing(paper.join((picture, straight)), " ".join(said))
 
 
@@ -129,9 +118,8 @@ def _draw_horizon(panel: Panel, H: Array) -> None:
     at = ends[1, 0] / ends[1, 2]
     if 0 < at < 0.8 * _PICTURE[0]:
         aside, anchor = (8, "lm") if at < 250 else (-8, "rm")  # to the right of it is corner 3
-        panel.text(
-            [at + aside, _PICTURE[1] - 14], "the wall's horizon", IDEAL, anchor=anchor, size=12
-        )
+        below = [at + aside, _PICTURE[1] - 14]
+        panel.text(below, "the wall's horizon", IDEAL, anchor=anchor, size=12)
 
 
 def _draw_way(panel: Panel, place: Array) -> None:
@@ -146,7 +134,7 @@ def _draw_way(panel: Panel, place: Array) -> None:
     panel.arrows(tip - 34 * panel.pixel * along, 40 * panel.pixel * along, "white", 5)
     panel.arrows(tip - 32 * panel.pixel * along, 36 * panel.pixel * along, IDEAL, 2.4)
     if (high[0] - low[0]) / 2 <= part * abs(way[0]) + 1e-6:  # it has left at a side
-        words, below = f"X = {place[0]:.0f} mm".replace("-", "−"), tip + [0, 24 * panel.pixel]
+        words, below = f"X = {place[0]:.0f} mm", tip + [0, 24 * panel.pixel]
         anchor = "lm" if way[0] < 0 else "rm"
         if anchor == "rm":  # so long that it would lie over the chart
             below[1] = max(below[1], _CHART[2, 1] + 20 * panel.pixel)

@@ -9,8 +9,7 @@ from cvnotes.base import Array
 from cvnotes.camera import Camera
 from cvnotes.pictures import course, rails, render_scene
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
-from cvnotes.show.explorations.paper import Drawn, Panel, Paper
-from cvnotes.show.explorations.strokes import circle
+from cvnotes.show.explorations.paper import Drawn, Panel, Paper, circle
 from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, MUTED, WORLD, mixed
 
 _CAMERA, _DOWN, _HALFWAY, _CELL = Camera(course.camera().A), 1.95, 20.0, 4.0  # m; the grass
@@ -34,11 +33,9 @@ def horizon_model() -> Model:
         Setting("part", "how far (1: ∞)", 0.3, 1, 0.005, 0.375, "of the cell: 0.5 is 20 m"),
         Setting("turn", "direction (°)", -_SIDE, _SIDE, 1, 0, "to the right of the rails"),
     )
-    about = (
-        "The ground from above with a grid of 4 m, far distances pressed together, so that the "
-        "line at infinity is a rim; and the same grid in the picture of a camera, where it is the "
-        "horizon. One cell is yellow in both; in the sky its quadruple, the last number orange."
-    )
+    about = """The ground from above with a grid of 4 m, far distances pressed together, so that the
+    line at infinity is a rim; and the same grid in the picture of a camera, where it is the
+    horizon. One cell is yellow in both; in the sky its quadruple, the last number orange."""
 
     def on_map(_: Values, at: Array) -> Values:
         return {"part": float(np.hypot(*at)), "turn": _degrees(at)}
@@ -115,7 +112,7 @@ def _on_disc(plan: Panel, at: Array, at_the_rim: bool) -> None:
 
 def _tell(view: Panel, place: Array) -> None:
     """Write the cell's quadruple into the sky, large, its last number orange, and what that is."""
-    *others, last = quadruple(place).strip("[]").replace("-", "−").split()
+    *others, last = quadruple(place).strip("[]").split()
     view.text(_TOLD, "]", IDEAL, anchor="rm", size=24)
     view.text(_TOLD - [14, 0], last, ESTIMATED, anchor="rm", size=24)
     view.text(_TOLD - [146, 0], f"[{'  '.join(others)}", IDEAL, anchor="rm", size=24)
@@ -189,7 +186,7 @@ def _picture(sharpness: int) -> Drawn:
 
 def _name(panel: Panel, places: Array) -> None:
     for at, degrees in zip(places, np.degrees(_NAMED), strict=True):
-        panel.text(at, f"{degrees:.0f}°".replace("-", "−"), IDEAL, anchor="mm", size=12)
+        panel.text(at, f"{degrees:.0f}°", IDEAL, anchor="mm", size=12)
 
 
 def _sentence(place: Array, high: float) -> str:

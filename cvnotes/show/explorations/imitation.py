@@ -19,27 +19,22 @@ def imitation_model() -> Model:
     settings = (
         Setting("turn", "direction of Jp (°)", -180, 180, 3, 0, "where the pose moves the corner"),
     )
-    about = (
-        "A corner of a board, and three arrows: Jc, where the camera's unknown moves it, Jp, where "
-        "the pose can move it, along a dashed line, and N, what the pose leaves of Jc. Beside it "
-        "the squares left over, for one view and for four: two bowls, and bars as wide as they "
-        "are at the height 1."
-    )
+    about = """A corner of a board, and three arrows: Jc, where the camera's unknown moves it, Jp,
+    where the pose can move it, along a dashed line, and N, what the pose leaves of Jc. Beside it
+    the squares left over, for one view and for four: two bowls, and bars as wide as they are at the
+    height 1."""
 
     def draw(paper: Paper, values: Values) -> Drawing:
         J_p, answer, N = parted(values["turn"])
         corner = paper.panel(_SIDE, _ACROSS, _DOWN, "a corner of a board: pull the green arrow")
         _draw_corner(corner, J_p, answer, N)
-        bowls = paper.panel(
-            (440, _SIDE[1]), (_LEFT, _FAR), (_TOP, _FOOT), "the squares left, over a"
-        )
+        title = "the squares left, over a"
+        bowls = paper.panel((440, _SIDE[1]), (_LEFT, _FAR), (_TOP, _FOOT), title)
         _draw_bowls(bowls, float(N @ N))
         return Drawing(paper.join((corner, bowls)), _sentence(values["turn"], N))
 
-    def turned(_: Values, at: Array) -> Values:
-        return {"turn": float(np.degrees(np.arctan2(at[1], at[0])))}
-
-    return Model("imitation", about, settings, draw, {"pose": turned})
+    drags = {"pose": lambda _, at: {"turn": np.degrees(np.arctan2(at[1], at[0]))}}
+    return Model("imitation", about, settings, draw, drags)
 
 
 def parted(turn: float) -> tuple[Array, Array, Array]:
@@ -89,7 +84,7 @@ def _draw_bowls(panel: Panel, square: float) -> None:
         panel.line([[-_FAR, height], [_FAR, height]], MUTED, 1, dash=0 if height == 0 else 4)
         panel.text([-_FAR - 0.1, height], f"{height}", IDEAL, anchor="rm", size=14)
     for number in (-2, -1, 0, 1, 2):
-        panel.text([number, -0.23], f"{number}".replace("-", "−"), anchor="mm", size=13)
+        panel.text([number, -0.23], f"{number}", anchor="mm", size=13)
     for views, ink, row in _VIEWS:
         panel.line(np.column_stack([a, views * square * a**2]), ink, 2.6)
         wide = (views * square) ** -0.5 if square else np.inf
@@ -107,13 +102,9 @@ def _told(wide: float) -> str:
 
 def _sentence(turn: float, N: Array) -> str:
     if not N.any():
-        return (
-            f"Jp at {turn:g}°, along Jc: N = (0, 0). The pose imitates the camera, and a stays "
-            "unknown, however many the views."
-        )
+        return f"""Jp at {turn:g}°, along Jc: N = (0, 0). The pose imitates the camera, and a stays
+        unknown, however many the views."""
     x, y = N.round(2) + 0.0
     wide = float(1 / np.linalg.norm(N))
-    return (
-        f"Jp at {turn:g}°: N = ({x:.2f}, {y:.2f}), its square {N @ N:.2f}. One view tells a to "
-        f"± {_told(wide)}, four to ± {_told(wide / 2)}."
-    )
+    return f"""Jp at {turn:g}°: N = ({x:.2f}, {y:.2f}), its square {N @ N:.2f}. One view tells a to
+    ± {_told(wide)}, four to ± {_told(wide / 2)}."""

@@ -9,8 +9,7 @@ from cvnotes.base import Array
 from cvnotes.camera import Camera, Lens, intrinsics
 from cvnotes.camera.lens import radial_factor
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
-from cvnotes.show.explorations.paper import Drawn, Panel, Paper, Range
-from cvnotes.show.explorations.strokes import circle
+from cvnotes.show.explorations.paper import Drawn, Panel, Paper, Range, circle
 from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, LENS, MUTED
 from cvnotes.targets import Chessboard
 from cvnotes.warping import backward_warp
@@ -39,11 +38,9 @@ def lens_model(camera: Camera, _: Chessboard) -> Model:
         _around("k1", 1.5, 0.01, k1, what),
         _around("k2", 2.0, 0.01, k2, "radial, of the fourth power of r"),
     )
-    about = (
-        "A room seen through a lens, with arrows from where an ideal lens shows its points, and an "
-        "edge of its tiles beside a ruler; beside it the observed radius r L(r) against the ideal "
-        "radius r, with the same arrows and the edge's end, and the fold where the model ends."
-    )
+    about = """A room seen through a lens, with arrows from where an ideal lens shows its points,
+    and an edge of its tiles beside a ruler; beside it the observed radius r L(r) against the ideal
+    radius r, with the same arrows and the edge's end, and the fold where the model ends."""
 
     def pulled(values: Values, at: Array) -> Values:
         """Choose the k1 whose curve has a height over the ideal radius of the edge's end."""
@@ -78,14 +75,12 @@ def _draw(camera: Camera, paper: Paper, values: Values) -> Drawing:
     title = "observed over ideal radius, in focal lengths"
     curve = paper.panel(_SIZE, (0, _RADIUS), (1.2, -0.2), title)
     corners = camera_corners(camera)[[0, 1, 2, 3, 0]]
-    for colour, width in (("#FFFFFF", 3.5), (CAMERA, 2)):
-        grid.line(corners, colour, width)
+    grid.line(corners, CAMERA, 2, rim=1.5)
     grid.text(corners[3] + [7 * grid.pixel, -6 * grid.pixel], "picture", CAMERA, anchor="ld")
     moved = _draw_arrows(grid, lens)
     grid.text(_GUESSED + [7 * grid.pixel, 0], "?", IDEAL, anchor="lm", size=18)
     end = polynomial(lens, _END)
-    grid.mark(end, "lens", 8)
-    grid.grip("edge", "the end of the edge of the tiles", end, 2)
+    grid.grip("edge", "the end of the edge of the tiles", end, 2, "lens", 8)
     _draw_curve(curve, lens, moved)
     return Drawing(paper.join((grid, curve)), _sentence(camera, lens))
 
@@ -103,12 +98,7 @@ def _room() -> Drawn:
 
 @lru_cache(maxsize=4)  # it stays while something else is pulled
 def bent_room(
-    lens: Lens,
-    x: Range,
-    y: Range,
-    panel: tuple[int, int],
-    sharpness: int,
-    part: float = 0.75,
+    lens: Lens, x: Range, y: Range, panel: tuple[int, int], sharpness: int, part: float = 0.75
 ) -> Drawn:
     """Show the room through a lens, from x to x and from y to y of the plane z = 1.
 
@@ -118,10 +108,8 @@ def bent_room(
     room = _room()
     h, w = room.shape[:2]
     size = sharpness * panel[0], sharpness * panel[1]
-    columns, rows = (
-        low + (high - low) * (np.arange(n) + 0.5) / n
-        for (low, high), n in zip((x, y), np.array(panel) // _COARSE, strict=True)
-    )
+    cells = zip((x, y), np.array(panel) // _COARSE, strict=True)
+    columns, rows = (low + (high - low) * (np.arange(n) + 0.5) / n for (low, high), n in cells)
     ideal = _continued(lens.undistort(np.stack(np.meshgrid(columns, rows), axis=-1)))
     sides = (_DETAIL * ideal + np.array([w - 1, h - 1]) / 2).astype(np.float32)
     m = [
@@ -136,9 +124,8 @@ def _continued(x: Array) -> Array:
     """Carry values (h, w, 2) on by two cells into NaN, so that no line between two lacks an end."""
     for _ in range(2):
         framed = np.pad(x, ((1, 1), (1, 1), (0, 0)), constant_values=np.nan)
-        around = np.stack(
-            [framed[:-2, 1:-1], framed[2:, 1:-1], framed[1:-1, :-2], framed[1:-1, 2:]]
-        )
+        rows, columns = framed[:, 1:-1], framed[1:-1]
+        around = np.stack([rows[:-2], rows[2:], columns[:, :-2], columns[:, 2:]])
         known = np.isfinite(around)
         mean = np.where(known, around, 0).sum(axis=0) / known.sum(axis=0).clip(1)
         x = np.where(np.isnan(x) & known.any(axis=0), mean, x)
@@ -216,20 +203,16 @@ def _sentence(camera: Camera, lens: Lens) -> str:
     if np.isnan(ideal).any():
         seen = seen_radius(lens, np.array(lens.max_radius))
         black = np.isnan(ideal).any(axis=-1).sum()
-        return (
-            f"The model folds at r = {lens.max_radius:.3f}, which is seen at "
-            f"r' = {seen:.3f}. The picture's corners are at r' up to "
-            f"{r:.3f}: in {black} of them nothing is seen. Orange is no lens."
-        )
+        return f"""The model folds at r = {lens.max_radius:.3f}, which is seen at r' = {seen:.3f}.
+        The picture's corners are at r' up to {r:.3f}: in {black} of them nothing is seen. Orange is
+        no lens."""
     fold = f"The model folds at r = {lens.max_radius:.3f}, beyond the picture. "
     ends = "" if np.isinf(lens.max_radius) else fold
     away = np.linalg.norm(camera.A[:2, :2] @ (ideal - corners).T, axis=0)
     far, farthest = away.max(), away.argmax()
     side = "out" if np.linalg.norm(ideal[farthest]) >= np.linalg.norm(corners[farthest]) else "in"
-    return (
-        f"{ends}{_of_the_end(camera, lens)}What is seen in the picture's corners comes from up to "
-        f"{far:.1f} px farther {side}."
-    )
+    return f"""{ends}{_of_the_end(camera, lens)}What is seen in the picture's corners comes from up
+    to {far:.1f} px farther {side}."""
 
 
 def _of_the_end(camera: Camera, lens: Lens) -> str:

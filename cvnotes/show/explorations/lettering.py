@@ -1,6 +1,7 @@
 """Words as pixels, written once and kept: stamps for a panel, and its title."""
 
 import math
+import re
 from functools import lru_cache
 from itertools import groupby
 
@@ -22,12 +23,23 @@ SMALL = str.maketrans("₀₁₂₃₄₅₆₇₈₉ᵤᵥ⁻¹²³ᵀ", "01234
 _SMALLER = 0.75  # than the letter before it
 
 
+def with_minus(words: str) -> str:
+    """Return words whose negative numbers have a true minus.
+
+    Examples
+    --------
+    >>> with_minus("k1 = -0.2, a plain-spoken lens")
+    'k1 = −0.2, a plain-spoken lens'
+    """
+    return re.sub(r"-(?=\d)", "−", words)
+
+
 @lru_cache(maxsize=512)
 def stamp(
     words: str, anchor: str, size: int, stroke: int
 ) -> tuple[Image.Image, Image.Image, tuple[int, int]]:
     """Write words once: masks of their white rim and of their ink, and where these begin."""
-    runs = _runs(words or " ", size)
+    runs = _runs(with_minus(words) or " ", size)
     (last, _), part, font = runs[-1]
     ascent, descent = _font(size).getmetrics()
     x = -(last + font.getlength(part)) * "lmr".index(anchor[0]) / 2

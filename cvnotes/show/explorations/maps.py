@@ -5,14 +5,17 @@ import numpy as np
 from cvnotes.base import Array
 from cvnotes.projective import apply, cross_ratio, to_homogeneous
 from cvnotes.show.explorations.model import Drag, Drawing, Model, Setting, Values
-from cvnotes.show.explorations.paper import Panel, Paper
-from cvnotes.show.explorations.strokes import circle
+from cvnotes.show.explorations.paper import Panel, Paper, circle
 from cvnotes.show.style import ESTIMATED, FAINT, IDEAL, LENS, MUTED, WORLD
 
 # Where the square is taken hold of.
 _RIGHT, _TOP, _CORNER = np.array([1.0, 0]), np.array([0.0, -1]), np.array([1.0, -1])
 _SIDE = np.array([[1, -1], [1, 0], [1, 0.5], [1, 1]])  # four points of its right side
 _SQUARE = np.array([[-1.0, -1], [1, -1], [1, 1], [-1, 1], [-1, -1]])
+# A clock's face: hands for ten past ten, and its hours but for three, where b has its name.
+_HOURS = np.array([[np.sin(a), -np.cos(a)] for a in np.radians(np.arange(0, 360, 30))])
+_HANDS = [[[0, 0], at] for at in (0.42 * _HOURS[10], 0.64 * _HOURS[2])]
+_FACE = np.array([*_HANDS, *([0.74 * at, 0.85 * at] for at in np.delete(_HOURS, 3, axis=0))])
 _MEASURED = (
     ("blue side's length", "{:.3f}"),
     ("angle at corner 3", "{:.0f}°"),
@@ -25,9 +28,8 @@ _SNAP = 0.08  # so near to what changes nothing a hand means just that
 _WIDE = 2.3  # how far from the middle a hand may pull
 # Where the frames of the kinds begin, from the outermost to the innermost, and the rows of each.
 _FRAMES = (7, slice(5, 6)), (59, slice(3, 5)), (131, slice(1, 3)), (203, slice(0, 1))
-_KINDS = "Euclidean", "similar", "affine", "projective"
+_KINDS = "Euclidean: 3", "similar: 4", "affine: 6", "projective: 8"
 _SAID = "A Euclidean map", "A similarity", "An affine map", "A projective map"
-_NUMBERS = 3, 4, 6, 8
 
 
 def maps_model() -> Model:
@@ -40,19 +42,12 @@ def maps_model() -> Model:
         Setting("along", "corner, along", -0.5, 0.5, 0.05, 0, "not 0: projective"),
         Setting("up", "corner, up", -0.5, 0.5, 0.05, 0, "not 0: projective"),
     )
-    about = (
-        "A square with a grid and a circle in it, before the map, dashed, and after it; beside it "
-        "four frames, each in the next, for the kinds of maps, with what each keeps, measured on "
-        "both; lit is the kind of this map, and orange is what it has changed."
-    )
-    pulls = (
-        ("right side", _RIGHT, _to_side),
-        ("top", _TOP, _to_top),
-        ("corner", _CORNER, _to_corner),
-    )
+    about = """A square clock with a round face, before the map, dashed, and after it; beside it
+    four frames, each in the next, for the kinds of maps, with what each keeps, measured on both;
+    lit is the kind of this map, and orange is what it has changed."""
     drags = {
         name: lambda values, at, held=held, pull=pull: _inside(held, pull, values, at)
-        for name, held, pull in pulls
+        for name, _, held, pull in _PULLS
     }
     return Model("maps", about, settings, _draw, drags)
 
@@ -103,6 +98,14 @@ def _to_corner(values: Values, at: Array) -> Values:
     return {"along": float(along), "up": float(up)}
 
 
+# What is pulled, in the words of who cannot see it, where, and what a hand there does.
+_PULLS = (
+    ("right side", "the right side, to turn and enlarge", _RIGHT, _to_side),
+    ("top", "the top, to shear and stretch", _TOP, _to_top),
+    ("corner", "the corner, to break the parallels", _CORNER, _to_corner),
+)
+
+
 def _inside(held: Array, pull: Drag, values: Values, at: Array) -> Values:
     """Follow a hand, but only so far that no corner leaves the panel."""
     start = apply(matrix(values), held)
@@ -140,36 +143,30 @@ def _angle(a: Array, b: Array) -> float:
 
 def _draw(paper: Paper, values: Values) -> Drawing:
     H = matrix(values)
-    reach = float(np.abs(apply(H, _SQUARE)).max())  # by sliders; no hand gets there
-    wide = max(2.5, 1.2 * reach)
-    panel = paper.panel((380, 380), (-wide, wide), (-wide, wide), "pull the square at its crosses")
+    wide = max(2.5, 1.2 * float(np.abs(apply(H, _SQUARE)).max()))  # more by sliders, not by hand
+    panel = paper.panel((380, 380), (-wide, wide), (-wide, wide), "pull the clock at its crosses")
     panel.line(_SQUARE, MUTED, 1.2, dash=5)
     for way in np.eye(3)[:2]:  # sides that are no longer parallel run on to where they meet
         far = H @ way
         if abs(far[2]) > 1e-9:
             starts = apply(H, _SQUARE[:4])
             panel.segments([[start, far[:2] / far[2]] for start in starts], MUTED, 0.8)
-    steps = np.linspace(-1, 1, 5)
-    panel.polygons(apply(H, _SQUARE[:4])[None], "#E3F3EE")
-    for v in steps:
-        for ends in ([[-1, v], [1, v]], [[v, -1], [v, 1]]):
-            panel.line(apply(H, ends), WORLD, 2 if abs(v) == 1 else 0.8)
+    panel.polygons(apply(H, _SQUARE[:4])[None], "#BFE3D7")
+    panel.line(apply(H, _SQUARE), WORLD, 2)
+    panel.polygons(apply(H, circle(121))[None], "white")
     panel.line(apply(H, circle(121)), IDEAL, 2.2)
+    panel.segments(apply(H, _FACE), IDEAL, 3.5)
     panel.line(apply(H, _SIDE[[0, 3]]), LENS, 3)
     panel.mark(apply(H, _SIDE), "lens", 5)
-    middle = apply(H, [0, 0])
     for name, place, away in zip("abcd", _SIDE, (25, 25, 14, 14), strict=True):
         inwards = apply(H, place - [0.5, 0]) - apply(H, place)  # clear of marks and rings
         at = apply(H, place) + away * panel.pixel * inwards / np.hypot(*inwards)
         panel.text(at, name, LENS, anchor="mm", size=14)
-    for number, (name, what, place) in enumerate((
-        ("right side", "the right side, to turn and enlarge", _RIGHT),
-        ("top", "the top, to shear and stretch", _TOP),
-        ("corner", "the corner, to break the parallels", _CORNER),
-    ), 1):  # fmt: skip
+    for number, (name, what, place, _) in enumerate(_PULLS, 1):
         at = apply(H, place)
-        away = (at - middle) / np.hypot(*(at - middle))
-        panel.text(at + 0.132 * wide * away, f"{number}", ESTIMATED, anchor="mm", size=15)
+        away = at - apply(H, [0, 0])
+        away *= 0.132 * wide / np.hypot(*away)
+        panel.text(at + away, f"{number}", ESTIMATED, anchor="mm", size=15)
         panel.mark(at, "estimated", 8)
         panel.grip(name, what, at, 4)
     return Drawing(paper.join((panel, _table(paper, H, values))), _sentence(H, values))
@@ -182,10 +179,10 @@ def _table(paper: Paper, H: Array, values: Values) -> Panel:
     for i, (top, kept) in enumerate(_FRAMES):
         x, y = 7 + 10 * i, 297 - 11 * i
         frame = np.array([[x, top], [280 - x, top], [280 - x, y], [x, y], [x, top]])
-        lit, name = 3 - i == which, f"{_KINDS[3 - i]}: {_NUMBERS[3 - i]} numbers"
-        panel.polygons([frame], "#E3F3EE" if lit else "white")
-        panel.line(frame, WORLD if lit else FAINT, 2.5 if lit else 1)
-        rim = "#E3F3EE" if lit else "white"
+        lit, name = 3 - i == which, f"{_KINDS[3 - i]} numbers"
+        rim, ink, width = ("#E3F3EE", WORLD, 2.5) if lit else ("white", FAINT, 1)
+        panel.polygons([frame], rim)
+        panel.line(frame, ink, width)
         panel.text([x + 9, top + 17], name, IDEAL if lit else MUTED, size=15, rim=rim)
         for y, (what, form, before, after) in zip((38, 57), rows[kept], strict=False):
             same = form.format(before) == form.format(after)

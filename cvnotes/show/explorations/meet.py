@@ -5,12 +5,13 @@ import numpy as np
 from cvnotes.base import Array
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Panel, Paper
+from cvnotes.show.space.directions import onto
 from cvnotes.show.style import ESTIMATED, FAINT, IDEAL, LENS, MUTED, WORLD
 
 _TURNED, _FROM_ABOVE = np.radians([40, 27])  # from where the drawing is seen
 _ACROSS = np.array([np.cos(_TURNED), np.sin(_TURNED), 0])
 _BACK = np.array([-np.sin(_TURNED), np.cos(_TURNED), 0])
-_SEEN = np.array([_ACROSS, np.sin(_FROM_ABOVE) * _BACK + [0, 0, np.cos(_FROM_ABOVE)]])
+on_sheet = onto(np.array([_ACROSS, np.sin(_FROM_ABOVE) * _BACK + [0, 0, np.cos(_FROM_ABOVE)]]))
 _SPACE, _BESIDE = (520, 400), (330, 400)
 _SHOWN = ((-1.76, 1.64), (1.755, -0.86))
 _SQUARE = np.array([[-1.0, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0], [-1, -1, 0]])
@@ -34,11 +35,9 @@ def meet_model() -> Model:
         Setting(name, label, -1, 1, 0.1, starts[name], f"the line's v at u = {x:g}")
         for name, label, x in names
     )
-    about = (
-        "The plane w = 1 over the origin, with an orange and a blue line. Through each goes its "
-        "sheet of rays, down to the origin, where its normal stands; both sheets share a black "
-        "ray, which pierces the plane in a green square. Beside it the triples and their product."
-    )
+    about = """The plane w = 1 over the origin, with an orange and a blue line. Through each goes
+    its sheet of rays, down to the origin, where its normal stands; both sheets share a black ray,
+    which pierces the plane in a green square. Beside it the triples and their product."""
     drags = {name: lambda _, at, name=name, x=x: {name: _slid(x, at)} for name, _, x in names}
     return Model("meet", about, settings, _draw, drags)
 
@@ -47,11 +46,6 @@ def triple(values: Values, n: str) -> Array:
     """Return the triple [a b c] of a line v = p + k u: (−k, 1, −p)."""
     a, b = values[f"a{n}"], values[f"b{n}"]
     return np.array([(a - b) / 2, 1, -(a + b) / 2]).round(9) + 0.0
-
-
-def on_sheet(place: Array) -> Array:
-    """Project places (u, v, w), (..., 3), in parallel onto the sheet (..., 2)."""
-    return np.asarray(place @ _SEEN.T)
 
 
 def arrow_along(row: Array) -> Array:
@@ -74,9 +68,8 @@ def _draw(paper: Paper, values: Values) -> Drawing:
 
 
 def _space(paper: Paper, values: Values, lines: list[Array], m: Array) -> Panel:
-    panel = paper.panel(
-        _SPACE, *_SHOWN, "the plane w = 1 over the origin; pull the lines at their ends"
-    )
+    title = "the plane w = 1 over the origin; pull the lines at their ends"
+    panel = paper.panel(_SPACE, *_SHOWN, title)
     ray = (-m if m[2] < 0 else m) / max(float(np.linalg.norm(m)), 1e-9)
     panel.polygons([on_sheet(_SQUARE)], "#EDEDE8")
     panel.line(on_sheet(_SQUARE), FAINT, 1)
@@ -84,9 +77,8 @@ def _space(paper: Paper, values: Values, lines: list[Array], m: Array) -> Panel:
     ends = [np.array([[x, values[end + n], 1] for end, x, _ in _ENDS]) for n in "12"]
     for two, (*_, tints) in zip(ends, _LINES, strict=True):
         level = (two[1] - two[0]) / 2  # the direction in which the sheet leaves w = 0
-        panel.veil(
-            [on_sheet(np.array([*two, *end])) for end in ([level, -level], [_ORIGIN])], tints
-        )
+        sheets = np.array([*two, level, -level]), np.array([*two, _ORIGIN])
+        panel.veil([*map(on_sheet, sheets)], tints)
     panel.veil([on_sheet(_SQUARE + _UP)], ["#E3F3EE"])
     panel.line(on_sheet(_SQUARE + _UP), "#9ECFBF", 1)
     panel.line(on_sheet(np.outer([0, 9], ray)), IDEAL, 2)
@@ -119,9 +111,8 @@ def _name(
     panel: Panel, place: Array, by: tuple[float, float], words: str, ink: str, anchor: str
 ) -> None:
     """Write so many px to the right of a place, and so many below it."""
-    panel.text(
-        on_sheet(place) + panel.pixel * np.array(by) * [1, -1], words, ink, anchor=anchor, size=14
-    )
+    at = on_sheet(place) + panel.pixel * np.array(by) * [1, -1]
+    panel.text(at, words, ink, anchor=anchor, size=14)
 
 
 def _arrow(panel: Panel, start: Array, way: Array, name: str, ink: str) -> None:
@@ -171,7 +162,7 @@ def _equation(line: Array) -> str:
 
 
 def _number(x: float, digits: int = 4) -> str:
-    return f"{x:.{digits}g}".replace("-", "−")
+    return f"{x:.{digits}g}"
 
 
 def _sentence(lines: list[Array], m: Array) -> str:
@@ -180,8 +171,6 @@ def _sentence(lines: list[Array], m: Array) -> str:
     if not m.any():
         return f"Both lines are {one}, and {product} is no point: they share all of theirs."
     if not m[2]:
-        return (
-            f"{one} and {other} are parallel. {product} is the end of both, "
-            f"{_place(m)}; the ray that the sheets share is level."
-        )
+        return f"""{one} and {other} are parallel. {product} is the end of both, {_place(m)}; the
+        ray that the sheets share is level."""
     return f"{one} and {other} meet in {product}, which is the point {_place(m)}."

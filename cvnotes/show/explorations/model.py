@@ -1,13 +1,14 @@
 """What an exploration is: settings, and a pure function from their values to a picture."""
 
-import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
 from cvnotes.base import Array, CvnotesError
+from cvnotes.show.explorations.lettering import with_minus
 from cvnotes.show.explorations.paper import Drawn, Grip, Paper
 from cvnotes.show.picture import Picture, packed
 from cvnotes.show.style import ESTIMATED
@@ -85,6 +86,28 @@ class Drawing(NamedTuple):
 Drag = Callable[[Values, Array], Values]
 
 
+def placed(x: str, y: str = "", start: npt.ArrayLike = (0, 0)) -> Drag:
+    """Return what a hand does whose place says two settings, or one of them is "" and stays.
+
+    They are counted from where both are 0.
+    """
+    return lambda _, at: {
+        name: far for name, far in zip((x, y), np.subtract(at, start), strict=True) if name
+    }
+
+
+def nearest(name: str, tried: npt.NDArray[Any], places: Callable[[Values, Any], Array]) -> Drag:
+    """Return what a hand does that pulls a point along its way: the value whose place is nearest.
+
+    For each value that is tried there is a place, (n, 2).
+    """
+
+    def pulled(values: Values, at: Array) -> Values:
+        return {name: tried[np.linalg.norm(places(values, tried) - at, axis=1).argmin()]}
+
+    return pulled
+
+
 @dataclass(frozen=True)
 class Model:
     """An exploration without its sliders: values go in, a picture and a sentence come out.
@@ -94,14 +117,16 @@ class Model:
     name : str
         As in ``model(name)``.
     about : str
-        What the picture shows, in a sentence; the beginning of its alternative text.
+        What the picture shows, in a sentence or a paragraph, whose lines are joined; the beginning
+        of its alternative text.
     settings : tuple of Setting
         What can be moved.
     draw : callable
         (paper, values) → `Drawing`.
     drags : mapping
         What a hand that takes hold of the picture changes, by the name of the grip: (values, where
-        it is pulled to, in its panel's coordinates) → changed values.
+        it is pulled to, in its panel's coordinates) → changed values. `placed` and `nearest` make
+        the usual ones.
 
     Examples
     --------
@@ -121,6 +146,9 @@ class Model:
     draw: Callable[[Paper, Values], Drawing]
     drags: Mapping[str, Drag] = field(default_factory=dict)
 
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "about", _in_one_line(self.about))
+
     def values(self, **given: float) -> dict[str, float]:
         """Fill up given values with the starting ones; refuse what no slider could say."""
         values = {setting.name: setting.value for setting in self.settings}
@@ -130,10 +158,8 @@ class Model:
             values[name] = value
         for s in self.settings:
             if not s.low <= values[s.name] <= s.high:
-                raise CvnotesError(
-                    f"{s.name}: expected a number from {s.low:g} to {s.high:g}, "
-                    f"got {values[s.name]!r}"
-                )
+                ends = f"expected a number from {s.low:g} to {s.high:g}"
+                raise CvnotesError(f"{s.name}: {ends}, got {values[s.name]!r}")
         return values
 
     def starting(self, **values: float) -> "Model":
@@ -150,7 +176,7 @@ class Model:
         """Draw all values on some paper: sharper than usual, or narrow."""
         try:
             drawing = self.draw(paper, values)
-            sentence = re.sub(r"-(?=\d)", "−", drawing.sentence)
+            sentence = with_minus(_in_one_line(drawing.sentence))
             return drawing._replace(sentence=sentence, grips=paper.grips)
         except CvnotesError as reason:
             panel = paper.panel((660, 120), (0, 1), (0, 1))
@@ -177,7 +203,8 @@ class Model:
             raise CvnotesError(f"{self.name}: {name!r} is none of {', '.join(self.drags)}")
         if not np.isfinite(at).all():
             raise CvnotesError(f"at: expected two finite numbers, got {at}")
-        moved = {**values, **self.drags[name](values, np.array(at, dtype=np.float64))}
+        pulled = self.drags[name](values, np.array(at, dtype=np.float64))
+        moved = values | {name: float(value) for name, value in pulled.items()}
         for s in self.settings:
             if moved[s.name] != values[s.name]:
                 steps = round((moved[s.name] - s.low) / s.step)
@@ -216,3 +243,8 @@ class Model:
         alt = f"{self.about} {drawing.sentence}"
         data, mime = packed(drawing.picture, level=9)
         return Picture(data, alt, drawing.picture.shape[1] // 2, mime)
+
+
+def _in_one_line(paragraph: str) -> str:
+    """Return words as they are told, which the code may have broken into lines."""
+    return " ".join(paragraph.split())

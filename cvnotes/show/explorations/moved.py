@@ -24,9 +24,9 @@ from cvnotes.show.explorations.boards import (
     pinhole,
 )
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
-from cvnotes.show.explorations.paper import Panel, Paper
-from cvnotes.show.explorations.strokes import circle
+from cvnotes.show.explorations.paper import Panel, Paper, circle
 from cvnotes.show.space.camera_shapes import camera_shapes
+from cvnotes.show.space.directions import onto
 from cvnotes.show.space.shapes import Lines
 from cvnotes.show.style import CAMERA, MUTED, mixed, rgb
 
@@ -37,11 +37,7 @@ _TILES, _WALL, _SHADOW, _JOINTS = "#EFE7D9", "#E2EBE4", "#CBC5BD", "#FBFAF7"
 _LINES, _GREY = "#BFD3C4", "#ECECEC"  # of the wall in the photograph; where nothing is told
 # Seen from above and behind the camera: x to the right, y down, z away.
 _VIEW = rotation_from_vector([0.45, 0, 0]) @ rotation_from_vector([0, 0.5, 0])
-
-
-def on_sheet(W: Array) -> Array:
-    """Project points (..., 3) onto the sheet (..., 2), all parallel."""
-    return np.asarray(W @ _VIEW[:2].T)
+on_sheet = onto(_VIEW[:2])
 
 
 def moved_model() -> Model:
@@ -51,10 +47,8 @@ def moved_model() -> Model:
         Setting("who", "who moves (%)", 0, 100, 1, 0, "0: the board alone; 100: the camera alone"),
         Setting("wall", "the wall in it", 0, 1, 1, 0, "whether the photograph shows the wall, too"),
     )
-    about = (
-        "A board and a camera in space, where they stood for twelve photographs, if the board "
-        "moved, the camera, or both; and the photograph, where the board is the same for all these."
-    )
+    about = """A board and a camera in space, where they stood for twelve photographs, if the board
+    moved, the camera, or both; and the photograph, where the board is the same for all these."""
     drags = {"camera": _carried, "board": _passed}
     return Model("moved", about, settings, _draw, drags)
 

@@ -9,8 +9,7 @@ from cvnotes.camera import Camera, move, pose, rotation_from_vector
 from cvnotes.pictures import course
 from cvnotes.show.explorations.boards import draw_board
 from cvnotes.show.explorations.model import Drag, Drawing, Model, Setting, Values
-from cvnotes.show.explorations.paper import Panel, Paper
-from cvnotes.show.explorations.strokes import circle
+from cvnotes.show.explorations.paper import Panel, Paper, circle
 from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL
 
 _SIZE, _BARS, _GAP = (504, 378), (350, 378), 16  # px of the page; px between photographs
@@ -32,10 +31,8 @@ def nails_model() -> Model:
         for way, to, start in zip(("right", "down"), ("right", "down"), starts, strict=True)
     )  # fmt: skip
     settings += (Setting("lens", "with a lens", 0, 1, 1, 0, "whose k₁ and k₂ are estimated, too"),)
-    about = (
-        "Four photographs of a board, each with a nail that stands upright on the board, and the "
-        "standard deviations of the camera that they determine, on a scale of powers of ten."
-    )
+    about = """Four photographs of a board, each with a nail that stands upright on the board, and
+    the standard deviations of the camera that they determine, on a scale of powers of ten."""
     drags = {f"nail {i}": _pulled(i) for i in range(1, 5)}
     return Model("nails", about, settings, _draw, drags)
 
@@ -45,12 +42,8 @@ def held(values: Values) -> Array:
     W, A = course.board().points.mean(axis=0), course.camera().A
     rays = np.column_stack([(_AIMS - A[:2, 2]) / [A[0, 0], A[1, 1]], np.ones(4)])
     lean = np.radians([[values[f"down{i}"], -values[f"right{i}"], 0] for i in range(1, 5)])
-    return np.array(
-        [
-            pose(R, _FAR * ray - R @ W)
-            for R, ray in zip(rotation_from_vector(lean), rays, strict=True)
-        ]
-    )
+    turns = rotation_from_vector(lean)
+    return np.array([pose(R, _FAR * ray - R @ W) for R, ray in zip(turns, rays, strict=True)])
 
 
 def camera_of(values: Values) -> Camera:
@@ -96,8 +89,8 @@ def _pulled(i: int) -> Drag:
 
 def _draw(paper: Paper, values: Values) -> Drawing:
     camera, board = camera_of(values), course.board()
-    w, h = sheet = 2 * camera.size[0] + _GAP, 2 * camera.size[1] + _GAP
-    panel = paper.panel(_SIZE, (-0.5, w - 0.5), (-0.5, h - 0.5), "four photographs: pull the nails")
+    sheet = 2 * camera.size[0] + _GAP, 2 * camera.size[1] + _GAP
+    panel = paper.picture_panel(_SIZE, sheet, "four photographs: pull the nails")
     for i, G in enumerate(held(values), start=1):
         u, v = _at(i)
         frame = np.array([[0, 0], [1, 0], [1, 1], [0, 1]]) * camera.size - 0.5
@@ -106,8 +99,7 @@ def _draw(paper: Paper, values: Values) -> Drawing:
         draw_board(panel, beside, board)
         foot = board.points.mean(axis=0)
         nail = beside.project([foot, foot - [0, 0, _NAIL]])
-        panel.line(nail, "white", 5)
-        panel.line(nail, ESTIMATED, 3)
+        panel.line(nail, ESTIMATED, 3, rim=2)
         for size, ink in ((7.5, "white"), (6, ESTIMATED)):
             panel.polygons([nail[1] + size * panel.pixel * circle(33)], ink)
         panel.grip(f"nail {i}", f"the nail of photograph {i}", nail[1], 2)

@@ -15,8 +15,7 @@ from cvnotes.pictures import course
 from cvnotes.projective import apply, to_homogeneous
 from cvnotes.show.explorations.boards import draw_net, draw_squares
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
-from cvnotes.show.explorations.paper import Panel, Paper
-from cvnotes.show.explorations.strokes import circle
+from cvnotes.show.explorations.paper import Panel, Paper, circle
 from cvnotes.show.style import COLOURS, ESTIMATED, FAINT, IDEAL, LENS, MUTED, mixed
 
 _BOARD, _NOISE, _TIMES = course.board(), 0.5, 10  # px; shifts are drawn so many times
@@ -34,11 +33,9 @@ def origin_model() -> Model:
         Setting("out", "origin from the board's middle (mm)", -_FARTHEST, _FARTHEST, 10, _FARTHEST,
                 "along the board, upwards and to the left"),
     )  # fmt: skip
-    about = (
-        "A far board from the side, over a scale of depths: where it is, and where the plain DLT "
-        "believes it, swung about the origin of its coordinates. Below, two nets over its "
-        "corners, their shifts enlarged: of the plain DLT, and of the normalised one."
-    )
+    about = """A far board from the side, over a scale of depths: where it is, and where the plain
+    DLT believes it, swung about the origin of its coordinates. Below, two nets over its corners,
+    their shifts enlarged: of the plain DLT, and of the normalised one."""
 
     def pulled(_: Values, at: Array) -> Values:
         start, end = _in_camera(np.array([place(0.0), place(1.0)]))[:, [2, 1]]
@@ -118,11 +115,9 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     at = place(values["out"])
     net, cured = apply(plain(at), corners()[0] - at), normalised()
     side, ratios = _side(paper, at)
-    sentence = (
-        f"The origin is {abs(values['out']):.0f} mm from the board's middle, which the plain DLT "
-        f"believes {ratios[1]:.2f} times as far away as the origin (true: {ratios[0]:.2f}). Its "
-        f"net is {rms(net):.2f} px off, the normalised one's {rms(cured):.2f} px."
-    )
+    sentence = f"""The origin is {abs(values["out"]):.0f} mm from the board's middle, which the
+    plain DLT believes {ratios[1]:.2f} times as far away as the origin (true: {ratios[0]:.2f}). Its
+    net is {rms(net):.2f} px off, the normalised one's {rms(cured):.2f} px."""
     nets = _net(paper, net, "the DLT", LENS), _net(paper, cured, "points moved first", ESTIMATED)
     return Drawing(paper.join((side,), nets), sentence)
 
@@ -131,12 +126,8 @@ def _side(paper: Paper, at: Array) -> tuple[Panel, list[float]]:
     """Draw the board from the side; return with it how far its middle is, in the origin's depth."""
     width, height = _NARROW if paper.narrow else _WIDE
     low = _HIGH + (_AWAY[1] - _AWAY[0]) * height / width
-    panel = paper.panel(
-        (width, height),
-        _AWAY,
-        (_HIGH, low),
-        "from the side; below, the depth in that of the origin",
-    )
+    title = "from the side; below, the depth in that of the origin"
+    panel = paper.panel((width, height), _AWAY, (_HIGH, low), title)
     hinge, *boards = (one[..., [2, 1]] for one in believed(at))
     middles = [board.mean(axis=0) for board in boards]
     floor = low - 36 * panel.pixel  # where the scale of depths begins
@@ -166,14 +157,13 @@ def _side(paper: Paper, at: Array) -> tuple[Panel, list[float]]:
         draw_net(panel, board, _BOARD, colour, 1)
     ray = middles[0][1] * _AWAY[0] / middles[0][0]
     panel.text([_AWAY[0] + 8 * panel.pixel, ray + 16 * panel.pixel], "← camera", rim=_SIDE)
-    panel.mark(hinge, "world", 6)
-    panel.grip("hinge", "the origin, whose depth is fixed", hinge, 10)
+    panel.grip("hinge", "the origin, whose depth is fixed", hinge, 10, "world", 6)
     return panel, [float(middle[0] / hinge[0]) for middle in middles]
 
 
 def _net(paper: Paper, net: Array, name: str, colour: str) -> Panel:
     """Draw a net over the corners as they are seen, its shifts enlarged."""
-    panel = paper.panel(_HALF, *_SEEN, f"{name}: {rms(net):.2f} px off (drawn × {_TIMES})")
+    panel = paper.panel(_HALF, *_SEEN, f"{name}: {rms(net):.2f} px off (shifts × {_TIMES})")
     m = corners()[1]
     draw_squares(panel, m, _BOARD, _PALE)
     draw_net(panel, m + _TIMES * (net - m), _BOARD, colour, 2)

@@ -18,6 +18,7 @@ from cvnotes.files.entry import Entry
 from cvnotes.show import explorations
 from cvnotes.show.explorations.model import Model, Values
 from cvnotes.show.explorations.paper import Paper
+from cvnotes.show.explorations.pulled import pulled_model
 from cvnotes.targets import Chessboard
 
 MAX_SHARPNESS = 3
@@ -71,7 +72,7 @@ def asked(question: str) -> Shown:
     question : str
         JSON with ``name``, ``values`` and, where wanted, ``camera`` and ``board`` as `page_data`
         has them, ``grip`` and ``at`` (what a hand pulls, and where to), ``sharpness`` and
-        ``narrow``.
+        ``narrow``. Where points are pulled, ``cells`` and ``photo``, as `pulled_model` takes them.
 
     Returns
     -------
@@ -85,8 +86,11 @@ def asked(question: str) -> Shown:
     'An ideal lens'
     """
     given: dict[str, Any] = json.loads(question)
-    camera, board = (json.dumps(given.get(key)) for key in ("camera", "board"))
-    asked_for = _model(given["name"], camera, board)
+    if "cells" in given:
+        asked_for = pulled_model(tuple(given["cells"]), given.get("photo"))
+    else:
+        camera, board = (json.dumps(given.get(key)) for key in ("camera", "board"))
+        asked_for = _model(given["name"], camera, board)
     values = asked_for.values(**given["values"])
     if "grip" in given:
         values = asked_for.dragged(given["grip"], tuple(given["at"]), **values)
@@ -98,6 +102,17 @@ def asked(question: str) -> Shown:
     pixels[..., :3] = drawing.picture
     rest = {"values": values, "sharpness": sharpness, **drawing.as_data()}
     return Shown(pixels.tobytes(), json.dumps(rest, ensure_ascii=False))
+
+
+def with_photograph(cells: list[str], photo: str) -> str:
+    """Write what a page has to know of points that are pulled over a photograph of the reader's.
+
+    Parameters
+    ----------
+    cells, photo
+        As `pulled_model` takes them.
+    """
+    return page_data(pulled_model(tuple(cells), photo), None, None, {})
 
 
 @lru_cache(maxsize=16)

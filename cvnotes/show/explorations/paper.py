@@ -18,6 +18,7 @@ from cvnotes.show.style import COLOURS, FAINT, INK, MARKERS, MUTED
 
 Drawn = npt.NDArray[np.uint8]
 Range = tuple[float, float]
+Size = tuple[int, int]
 _Stroke = tuple[float, float, float, float]
 
 _TITLE = 22  # px of the page above each panel
@@ -54,6 +55,12 @@ class Grip(NamedTuple):
     step: float
 
 
+def circle(n: int) -> Array:
+    """Return n points (n, 2) once round the unit circle, the last upon the first."""
+    turn = np.linspace(0, 2 * np.pi, n)
+    return np.stack([np.cos(turn), np.sin(turn)], axis=-1)
+
+
 class Paper:
     """Something to draw panels on, in pixels of the page times `sharpness`.
 
@@ -64,15 +71,16 @@ class Paper:
         self.sharpness, self.narrow = sharpness, narrow
         self.grips: tuple[Grip, ...] = ()
 
-    def panel(self, size: tuple[int, int], x: Range, y: Range, title: str = "") -> "Panel":
+    def panel(self, size: Size, x: Range, y: Range, title: str = "") -> "Panel":
         """Make a panel of (width, height) px that shows x from left to right, y downwards."""
         return Panel(size, x, y, title, 2 * self.sharpness)
 
     def picture_panel(
-        self, size: tuple[int, int], picture: tuple[int, int], title: str = ""
+        self, size: Size, picture: Size, title: str = "", corner: Range = (0, 0)
     ) -> "Panel":
-        """Make a panel that shows the pixels of a picture of (width, height)."""
-        return self.panel(size, (-0.5, picture[0] - 0.5), (-0.5, picture[1] - 0.5), title)
+        """Make a panel that shows the pixels of a picture of (width, height), from a corner on."""
+        (left, top), (width, height) = np.array(corner) - 0.5, picture
+        return self.panel(size, (left, left + width), (top, top + height), title)
 
     def join(self, *rows: tuple["Panel | list[Panel]", ...]) -> Drawn:
         """Lay panels side by side, and rows below each other: (height, width, 3).
@@ -127,8 +135,15 @@ class Panel:
         # What is farther away than any line can be followed has no place either.
         return np.where(np.abs(at) < _FARTHEST, at, np.nan)
 
-    def line(self, xy: npt.ArrayLike, colour: str, width: float = 1.5, dash: float = 0) -> None:
-        """Draw a curve through points (n, 2); it is interrupted where they are NaN."""
+    def line(
+        self, xy: npt.ArrayLike, colour: str, width: float = 1.5, dash: float = 0, rim: float = 0
+    ) -> None:
+        """Draw a curve through points (n, 2); it is interrupted where they are NaN.
+
+        With a white rim, by which it is wider in all, it is seen on dark and light.
+        """
+        if rim:
+            self.line(xy, "white", width + rim)
         at = self.place(xy)
         low, high = self._limits()
         thick = max(1, round(width * self.scale))
@@ -176,8 +191,10 @@ class Panel:
     def veil(self, panes: Sequence[npt.ArrayLike], tints: Sequence[str]) -> None:
         """Lay one coloured glass over all that is drawn: polygons (k, 2), each with its tint."""
         places = [self.place(pane) for pane in panes]
-        low = np.floor(np.min([at.min(axis=0) for at in places], axis=0)).astype(int)
-        high = np.ceil(np.max([at.max(axis=0) for at in places], axis=0)).astype(int)
+        ends = np.array([np.concatenate(places).min(axis=0), np.concatenate(places).max(axis=0)])
+        low, high = np.rint(ends + [[-1], [1]]).clip(0, self._image.size).astype(int)
+        if not (high > low).all():
+            return
         left, top, right, bottom = box = (*low.tolist(), *high.tolist())
         glass = Image.new("RGB", (right - left, bottom - top), "white")
         for at, tint in zip(places, tints, strict=True):
@@ -185,11 +202,7 @@ class Panel:
         self._image.paste(ImageChops.multiply(self._image.crop(box), glass), box)
 
     def mark(
-        self,
-        xy: npt.ArrayLike,
-        meaning: str,
-        size: float = 5,
-        looks: tuple[float, float] = (0, -1),
+        self, xy: npt.ArrayLike, meaning: str, size: float = 5, looks: tuple[float, float] = (0, -1)
     ) -> None:
         """Mark points (n, 2) with the colour and the marker of their meaning.
 
@@ -200,8 +213,21 @@ class Panel:
             if np.isfinite(at).all() and (np.abs(at) < 10 * max(self.width, self.height)).all():
                 self._marker(at, MARKERS[meaning], COLOURS[meaning], reach, looks)
 
-    def grip(self, name: str, label: str, xy: npt.ArrayLike, step: float = 1) -> None:
-        """Let a hand take hold of a point: a ring; one that lies outside is held at the border."""
+    def grip(
+        self,
+        name: str,
+        label: str,
+        xy: npt.ArrayLike,
+        step: float = 1,
+        meaning: str = "",
+        size: float = 5,
+    ) -> None:
+        """Let a hand take hold of a point: a ring; one that lies outside is held at the border.
+
+        If it has a meaning, its mark stands in the ring.
+        """
+        if meaning:
+            self.mark(xy, meaning, size)
         at = np.asarray(xy, dtype=np.float64)
         if np.isfinite(at).all():
             ends = np.array([self.x, self.y])
@@ -257,11 +283,9 @@ class Panel:
         grid = [[[v, y0], [v, y1]] for v in at_x] + [[[x0, v], [x1, v]] for v in at_y]
         self.segments(grid, GRID, 0.5)
         for value in at_x:
-            number = f"{value:g}".replace("-", "−")
-            self.text([value, y1 - 0.03 * (y1 - y0)], number, anchor="md", size=size)
+            self.text([value, y1 - 0.03 * (y1 - y0)], f"{value:g}", anchor="md", size=size)
         for value in at_y:
-            number = f"{value:g}".replace("-", "−")
-            self.text([x0 + 0.01 * (x1 - x0), value], number, size=size)
+            self.text([x0 + 0.01 * (x1 - x0), value], f"{value:g}", size=size)
 
     def drawn(self) -> Drawn:
         """Return what was drawn so far, without title and frame."""

@@ -5,7 +5,7 @@ from functools import lru_cache
 import numpy as np
 
 from cvnotes.base import Array
-from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
+from cvnotes.show.explorations.model import Drawing, Model, Setting, Values, placed
 from cvnotes.show.explorations.paper import Drawn, Panel, Paper
 from cvnotes.show.explorations.swing import floor_A, rows_of_tiles
 from cvnotes.show.style import ESTIMATED, LENS, MUTED, mixed, rgb
@@ -25,11 +25,9 @@ def parabola_model() -> Model:
         Setting("t", "t (mm)", _NEAREST, _FARTHEST, 1, 200, "where the parabola touches the cost"),
         Setting("mu", "μ", 0, 3, 0.05, 0, "the damping: by this fraction the parabola is narrower"),
     )
-    about = (
-        "The cost over one unknown t as a hilly ground, a parabola that touches it where t is, and "
-        "the steps to its lowest point from there on, damped or not."
-    )
-    return Model("parabola", about, settings, _draw, {"t": lambda _, at: {"t": float(at[0])}})
+    about = """The cost over one unknown t as a hilly ground, a parabola that touches it where t is,
+    and the steps to its lowest point from there on, damped or not."""
+    return Model("parabola", about, settings, _draw, {"t": placed("t")})
 
 
 def residuals(t: Array | float) -> tuple[Array, Array]:
@@ -85,8 +83,7 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     panel.line(np.stack([lowest, up]), ESTIMATED, 1.2, dash=3)
     _number_steps(panel, way)
     panel.mark(lowest, "estimated", 8)
-    panel.mark(at, "world", 9)
-    panel.grip("t", "t, where the parabola touches", at, 4)
+    panel.grip("t", "t, where the parabola touches", at, 4, "world", 9)
     rms = np.sqrt(cost(way) / len(r))
     return Drawing(paper.join((panel,)), _sentence(way, rms, mu))
 
@@ -95,7 +92,7 @@ def _name(panel: Panel, passing: float) -> None:
     """Draw the scale of t, and the wall; the words stay clear of the parabola passing there."""
     top, low = _SHOWN[1]
     for tick in (-600, -400, -200, 0, 200, 400, 600):
-        panel.text([tick, low + 7000], f"{tick}".replace("-", "−"), anchor="mm", size=11)
+        panel.text([tick, low + 7000], f"{tick}", anchor="mm", size=11)
     panel.line(np.array([[_WALL, top], [_WALL, -14_000]]), MUTED, 1.2, dash=4)
     above = 194_000 if 12_000 < passing < 100_000 else 62_000
     for words, down in (("row 1", 0), ("is behind", 14_000), ("the camera", 28_000)):
@@ -116,12 +113,9 @@ def _number_steps(panel: Panel, way: Array) -> None:
 
 
 def _sentence(way: Array, rms: Array, mu: float) -> str:
-    t, lowest = (f"{round(x)}".replace("-", "−") for x in way[:2])
     damped = f" and μ = {mu:.2f}" if mu else ""
-    said = (
-        f"At t = {t} mm{damped} the curve is replaced by a parabola; the step goes to its lowest "
-        f"point, {lowest} mm. "
-    )
+    said = f"""At t = {round(way[0])} mm{damped} the curve is replaced by a parabola; the step goes
+    to its lowest point, {round(way[1])} mm. """
     if way[1] < _WALL:
         rows = "row 1 lies" if way[1] > -600 else "rows 1 and 2 lie"
         return f"{said}There {rows} behind the camera: the walk does not find back."

@@ -6,9 +6,9 @@ import numpy.typing as npt
 from cvnotes.base import Array
 from cvnotes.camera import Camera
 from cvnotes.pictures import course
-from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
-from cvnotes.show.explorations.paper import Panel, Paper
-from cvnotes.show.explorations.strokes import circle, clipped
+from cvnotes.show.explorations.model import Drawing, Model, Setting, Values, nearest
+from cvnotes.show.explorations.paper import Panel, Paper, circle
+from cvnotes.show.explorations.strokes import clipped
 from cvnotes.show.style import CAMERA, ESTIMATED, FAINT, IDEAL, LENS, MUTED, WORLD, mixed
 
 _CAMERA = Camera(course.camera().A)
@@ -30,22 +30,19 @@ def parallel_model() -> Model:
         Setting("heading", "heading (°)", _LEFTMOST, 90, 0.5, 17, "how far they turn to the right"),
         Setting("slope", "slope (°)", -12, 12, 0.5, 6, "how steeply they climb"),
     )
-    about = (
-        "The picture of twelve parallel rods, each extended to their vanishing point; beside it in "
-        "space the rods, the eye and before it the picture as a pane of glass, which the ray "
-        "that is parallel to the rods pierces in this point."
-    )
+    about = """The picture of twelve parallel rods, each extended to their vanishing point; beside
+    it in space the rods, the eye and before it the picture as a pane of glass, which the ray that
+    is parallel to the rods pierces in this point."""
 
-    def turned(values: Values, at: Array) -> Values:
-        headings = np.arange(_LEFTMOST, 90.5, 0.5)
-        ends = on_sheet(_RAY * direction(headings, values["slope"]))
-        return {"heading": float(headings[np.linalg.norm(ends - at, axis=1).argmin()])}
+    def ends(values: Values, headings: Array) -> Array:
+        return on_sheet(_RAY * direction(headings, values["slope"]))
 
     def pointed(_: Values, at: Array) -> Values:
         x, y, z = np.linalg.solve(_CAMERA.A, [*at, 1])
         heading, slope = np.degrees([np.arctan2(x, z), np.arctan2(-y, np.hypot(x, z))])
         return {"heading": float(heading), "slope": float(slope)}
 
+    turned = nearest("heading", np.arange(_LEFTMOST, 90.5, 0.5), ends)
     return Model("parallel", about, settings, _draw, {"ray": turned, "vanishing point": pointed})
 
 
@@ -153,17 +150,13 @@ def _draw_space(
 
 def _sentence(d: Array, end: Array) -> str:
     if d[2] == 0:
-        return (
-            "The ray is parallel to the glass and pierces it nowhere: the pictures of the rods "
-            "are parallel, too."
-        )
+        return """The ray is parallel to the glass and pierces it nowhere: the pictures of the rods
+        are parallel, too."""
     a, b = d[:2] / d[2]
     aside = f"{abs(a):.2f} to the {'right' if a >= 0 else 'left'}"
     up = f"{abs(b):.2f} {'up' if b <= 0 else 'down'}"
     w, h = _CAMERA.size
     inside = -0.5 <= end[0] <= w - 0.5 and -0.5 <= end[1] <= h - 0.5
     place = "" if inside else ", outside of the picture"
-    return (
-        f"The rods lead {aside} and {up} for 1 ahead. Their pictures, extended, meet at "
-        f"({end[0]:.0f}, {end[1]:.0f}) px{place}."
-    )
+    return f"""The rods lead {aside} and {up} for 1 ahead. Their pictures, extended, meet at
+    ({end[0]:.0f}, {end[1]:.0f}) px{place}."""

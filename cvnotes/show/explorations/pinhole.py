@@ -11,8 +11,7 @@ from cvnotes.camera import Camera, intrinsics, pose, rotation_from_vector
 from cvnotes.pictures import render_scene, room
 from cvnotes.pictures.posters import chart
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
-from cvnotes.show.explorations.paper import Drawn, Panel, Paper
-from cvnotes.show.explorations.strokes import circle
+from cvnotes.show.explorations.paper import Drawn, Panel, Paper, circle
 from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, LENS, MUTED
 
 Spectrum = npt.NDArray[np.complex128]
@@ -37,22 +36,13 @@ def pinhole_model() -> Model:
     settings = (
         Setting("hole", "hole (mm)", 0.01, _WIDEST, 0.001, 0.2, "the diameter of the hole"),
         Setting("lens", f"a lens of {_LENS:g} mm", 0, 1, 1, 0, "a lens in place of the hole"),
-        Setting(
-            "focus",
-            "focus of the lens (m)",
-            0.1,
-            10,
-            0.05,
-            4,
-            "the depth that the lens makes sharp; a hole has none",
-        ),
-    )
-    about = (
-        "A room and a near card through a hole; beside it how many pixels wide the spot of a far "
-        "lamp is, against the diameter: the hole itself, the spread of light, and their sum, which "
-        "has a lowest point. With a lens: how wide the spot of a lamp is, against its depth. "
-        "Below, the rays that make the spot, from the side."
-    )
+        Setting("focus", "focus of the lens (m)", 0.1, 10, 0.05, 4,
+                "the depth that the lens makes sharp; a hole has none"),
+    )  # fmt: skip
+    about = """A room and a near card through a hole; beside it how many pixels wide the spot of a
+    far lamp is, against the diameter: the hole itself, the spread of light, and their sum, which
+    has a lowest point. With a lens: how wide the spot of a lamp is, against its depth. Below, the
+    rays that make the spot, from the side."""
 
     def draw(paper: Paper, values: Values) -> Drawing:
         d, focus = values["hole"], values["focus"]
@@ -118,9 +108,8 @@ def _sharp() -> tuple[Spectrum, Spectrum]:
 
 def photographed(patches: Array, d: float) -> Drawn:
     """Photograph the room, and before it the card: each with its own patch of light."""
-    room, card = (
-        spread_out(patch, d, each) for patch, each in zip(patches.tolist(), _sharp(), strict=True)
-    )
+    lights = zip(patches.tolist(), _sharp(), strict=True)
+    room, card = (spread_out(patch, d, each) for patch, each in lights)
     seen = room * (1 - card[1]) + card[0]
     return np.moveaxis(np.rint(seen.clip(0, 255)).astype(np.uint8), 0, 2)
 
@@ -142,9 +131,8 @@ def spread_out(patch: float, d: float, spectrum: Spectrum) -> Array:
 
 def _spots(paper: Paper, d: float) -> Panel:
     """Draw how wide a spot is behind each hole."""
-    panel = paper.panel(
-        (410, 197), (-0.02, 0.43), (_HIGHEST, -18), "width of the spot (px) against the hole (mm)"
-    )
+    title = "width of the spot (px) against the hole (mm)"
+    panel = paper.panel((410, 197), (-0.02, 0.43), (_HIGHEST, -18), title)
     panel.ticks(x=(0, 0.1, 0.2, 0.3, 0.4), y=(0, 40, 80), size=12)
     holes = np.linspace(0.008, 0.43, 400)
     patch, spread = spot(holes)
@@ -163,9 +151,8 @@ def _spots(paper: Paper, d: float) -> Panel:
 
 def _discs(paper: Paper, focus: float) -> Panel:
     """Draw how wide the lens makes a point at each depth."""
-    panel = paper.panel(
-        (410, 197), (-1.14, 1.1), (_DEEPEST, -3.4), "width of the spot (px) against depth (m)"
-    )
+    title = "width of the spot (px) against depth (m)"
+    panel = paper.panel((410, 197), (-1.14, 1.1), (_DEEPEST, -3.4), title)
     near, far = np.log10(_ROOM[:2])
     panel.polygons([[[near, 0], [far, 0], [far, _DEEPEST], [near, _DEEPEST]]], _PALE)
     panel.text([(near + far) / 2, 13], "the room", anchor="mm", size=13)
@@ -218,16 +205,12 @@ def _draw_lens(panel: Panel, focus: float) -> None:
 
 def _said_of_a_lens(focus: float) -> str:
     near, far = (float(disc(np.array(s), focus).max()) for s in (_CARD, _ROOM))
-    return (
-        f"A lens of {_LENS:g} mm, focused at {focus:g} m: the card, {_CARD:g} m away, becomes "
-        f"discs of {near:.2f} px, the room, 2.5 to 10 m away, of at most {far:.2f} px. "
-        f"Diffraction adds {spot(_LENS)[1]:.1f} px."
-    )
+    return f"""A lens of {_LENS:g} mm, focused at {focus:g} m: the card, {_CARD:g} m away, becomes
+    discs of {near:.2f} px, the room, 2.5 to 10 m away, of at most {far:.2f} px. Diffraction adds
+    {spot(_LENS)[1]:.1f} px."""
 
 
 def _said_of_a_hole(d: float) -> str:
     patch, spread = spot(d)
-    return (
-        f"A hole of {d:g} mm: its patch of light is {patch:.1f} px wide, and diffraction adds "
-        f"{spread:.1f} px. A lens of {_LENS:g} mm has {(_LENS / d) ** 2:,.0f} times its light."
-    )
+    return f"""A hole of {d:g} mm: its patch of light is {patch:.1f} px wide, and diffraction adds
+    {spread:.1f} px. A lens of {_LENS:g} mm has {(_LENS / d) ** 2:,.0f} times its light."""

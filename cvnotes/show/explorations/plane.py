@@ -7,7 +7,7 @@ import numpy as np
 from cvnotes.base import Array
 from cvnotes.camera import Camera, intrinsics, look_at
 from cvnotes.pictures import render_scene, room
-from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
+from cvnotes.show.explorations.model import Drawing, Model, Setting, Values, nearest, placed
 from cvnotes.show.explorations.paper import Drawn, Panel, Paper
 from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, hexed
 
@@ -26,18 +26,15 @@ def plane_model() -> Model:
         Setting("v", "v (px)", 50, 220, 1, 150, "and its row"),
         Setting("depth", "depth (mm)", _NEAREST, _FARTHEST, 50, 3500, "of the point on its ray"),
     )
-    about = (
-        "The pictures of two cameras in a room, and both from outside: the ray of a pixel of the "
-        "first, a point on it, the ray back to the second, and the plane of both rays, which cuts "
-        "the second picture in a line."
-    )
+    about = """The pictures of two cameras in a room, and both from outside: the ray of a pixel of
+    the first, a point on it, the ray back to the second, and the plane of both rays, which cuts the
+    second picture in a line."""
 
-    def pulled(values: Values, at: Array) -> Values:
-        depths = np.arange(_NEAREST, _FARTHEST + 1.0, 25)
-        seen = onlooker().project(on_the_ray(values["u"], values["v"], depths))
-        return {"depth": float(depths[np.linalg.norm(seen - at, axis=1).argmin()])}
+    def seen(values: Values, depths: Array) -> Array:
+        return onlooker().project(on_the_ray(values["u"], values["v"], depths))
 
-    drags = {"pixel": lambda _, at: {"u": float(at[0]), "v": float(at[1])}, "depth": pulled}
+    pulled = nearest("depth", np.arange(_NEAREST, _FARTHEST + 1.0, 25), seen)
+    drags = {"pixel": placed("u", "v"), "depth": pulled}
     return Model("plane", about, settings, _draw, drags)
 
 
@@ -91,8 +88,7 @@ def _draw(paper: Paper, values: Values) -> Drawing:
         picture = paper.picture_panel(_SHOWN, _SIZE, name)
         picture.image(photo)
         pictures.append(picture)
-    pictures[0].mark([u, v], "ideal", 8)
-    pictures[0].grip("pixel", "a pixel of the first picture", [u, v], 4)
+    pictures[0].grip("pixel", "a pixel of the first picture", [u, v], 4, "ideal", 8)
     partner = second.project(point)
     pictures[1].line(line, ESTIMATED, 2)
     pictures[1].mark(partner, "estimated", 8)
@@ -131,14 +127,13 @@ def _draw_outside(panel: Panel, m: Array, point: Array, line: Array) -> None:
     for start, way, name, ink, beside in (
         (two, T, "T", IDEAL, (-20, 6)),
         (one, 700 * d, "d", IDEAL, (-16, 0)),
-        (one, _NORMAL * n, "n", ESTIMATED, (-14, 0)),
+        (one, _NORMAL * n, "n", ESTIMATED, (-17, -12)),
     ):
         begin, end = seen(np.array([start, start + way]))
         panel.arrows(begin, end - begin, IDEAL, 3 if ink == IDEAL else 5)
         panel.text(end + beside, name, ink, anchor="mm", size=20)
     panel.arrows(begin, 0.9 * (end - begin), ESTIMATED, 2.2)  # within its black rim
-    panel.mark(seen(point), "estimated", 8)
-    panel.grip("depth", "the point on its ray", seen(point), 6)
+    panel.grip("depth", "the point on its ray", seen(point), 6, "estimated", 8)
 
 
 def standing(camera: Camera, m: Array) -> Array:

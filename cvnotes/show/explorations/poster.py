@@ -10,9 +10,8 @@ from cvnotes.camera import Camera, intrinsics, look_at
 from cvnotes.homography import dlt
 from cvnotes.pictures import render_scene
 from cvnotes.pictures.posters import poster_room
-from cvnotes.show.explorations.model import Drag, Drawing, Model, Setting, Values
-from cvnotes.show.explorations.paper import Drawn, Panel, Paper
-from cvnotes.show.explorations.strokes import circle
+from cvnotes.show.explorations.model import Drawing, Model, Setting, Values, placed
+from cvnotes.show.explorations.paper import Drawn, Panel, Paper, circle
 from cvnotes.show.style import ESTIMATED, IDEAL
 from cvnotes.warping import backward_warp, homography_map, map_array
 
@@ -38,21 +37,14 @@ def poster_model() -> Model:
             for axis, start, low, high in zip("uv", _READ[i - 1].tolist(), *_limits(i), strict=True)
         ),
         Setting("small", "small, too", 0, 1, 1, 0, "40 px high, and not 240 px alone"),
-        Setting(
-            "blur", "each blurs as much as it shrinks", 0, 1, 1, 0,
-            "it asks all over its own square, and takes the mean",
-        ),
+        Setting("blur", "each blurs as much as it shrinks", 0, 1, 1, 0,
+                "it asks all over its own square, and takes the mean"),
     )  # fmt: skip
-    about = (
-        "A print on a wall at a slant, with its four corners marked; beside it the same straight "
-        "on: of a guessed width and of the one that the camera's A gives, or large and small."
-    )
+    about = """A print on a wall at a slant, with its four corners marked; beside it the same
+    straight on: of a guessed width and of the one that the camera's A gives, or large and small."""
 
-    def corner(i: int) -> Drag:
-        return lambda _, at: {f"u{i}": float(at[0]), f"v{i}": float(at[1])}
-
-    drags = {f"corner {i}": corner(i) for i in range(1, 5)}
-    drags["width"] = lambda _, at: {"guess": float(at[0])}
+    drags = {f"corner {i}": placed(f"u{i}", f"v{i}") for i in range(1, 5)}
+    drags["width"] = placed("guess")
     return Model("poster", about, settings, _draw, drags)
 
 
@@ -139,10 +131,8 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     else:
         poster = straight_on(four, by_A, asks=1 + blur)
         below, below_sun = _hung(paper, poster, f"straight on, {by_A} px wide: by A")
-        sentence = (
-            f"Of the guessed width, {guess} px, the sun is {above_sun}. By A what the corners "
-            f"frame is {ratio:.2f} times as wide as high, and the sun is {below_sun}."
-        )
+        sentence = f"""Of the guessed width, {guess} px, the sun is {above_sun}. By A what the
+        corners frame is {ratio:.2f} times as wide as high, and the sun is {below_sun}."""
     left.mark(four, "estimated", 6)
     for i, at in enumerate(four, start=1):
         left.grip(f"corner {i}", f"corner {i}, {_NAMES[i - 1]}", at, 1)
@@ -150,8 +140,7 @@ def _draw(paper: Paper, values: Values) -> Drawing:
         left.text(aside, f"{i}", ESTIMATED, anchor="mm", size=14)
     edge = [guess - 0.5, _HIGH / 2]
     above.line([[edge[0], -0.5], [edge[0], _HIGH - 0.5]], ESTIMATED, 2.5)
-    above.mark(edge, "estimated", 6)
-    above.grip("width", "the right edge, whose place is guessed", edge, 8)
+    above.grip("width", "the right edge, whose place is guessed", edge, 8, "estimated", 6)
     return Drawing(paper.join((left, [above, below])), sentence)
 
 
@@ -159,10 +148,8 @@ def _apart(dots: Array, asks: int) -> str:
     """Say how far apart the pixels of two columns (v, 2, 2) ask, and how often."""
     far = np.linalg.norm(dots[-1] - dots[0], axis=-1) / (len(dots) - 1)
     how = f"{asks**2} times, all over its own square, and takes the mean" if asks > 1 else "once"
-    return (
-        f"Along a column the pixels of the small picture ask {far[0]:.1f} px apart on the left "
-        f"(dots) and {far[1]:.1f} px on the right. Each asks {how}."
-    )
+    return f"""Along a column the pixels of the small picture ask {far[0]:.1f} px apart on the left
+    (dots) and {far[1]:.1f} px on the right. Each asks {how}."""
 
 
 def _hung(paper: Paper, poster: Drawn, title: str) -> tuple[Panel, str]:

@@ -3,7 +3,7 @@
 import numpy as np
 
 from cvnotes.base import Array
-from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
+from cvnotes.show.explorations.model import Drawing, Model, Setting, Values, placed
 from cvnotes.show.explorations.paper import Panel, Paper
 from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, MUTED
 
@@ -23,37 +23,28 @@ def protractor_model() -> Model:
         Setting("left", "left, u (px)", -1360, -200, 5, -475, "where the left wall vanishes"),
         Setting("right", "right, u (px)", 420, 940, 5, 725, "where the right wall vanishes"),
     )
-    about = (
-        "The corner of a house in a picture, and its horizon, on which both walls vanish; below, "
-        "the same from above: the rays from the eye to both vanishing points are parallel to the "
-        "walls, so their angle is that of the walls."
-    )
+    about = """The corner of a house in a picture, and its horizon, on which both walls vanish;
+    below, the same from above: the rays from the eye to both vanishing points are parallel to the
+    walls, so their angle is that of the walls."""
 
     def draw(paper: Paper, values: Values) -> Drawing:
         ends = np.array([values["left"], values["right"]])
         ways = np.column_stack([ends - _C[0], [_F, _F]])  # x and z of both directions
         width = 480 if paper.narrow else 800
         part = width / np.ptp(_SHOWN)
-        picture = paper.panel(
-            (width, round(part * np.ptp(_HIGH))),
-            _SHOWN,
-            _HIGH,
-            "the picture, and what is far beside it",
-        )
-        above = paper.panel(
-            (width, round(part * np.ptp(_AHEAD))), _SHOWN, _AHEAD, "the same from above"
-        )
+        size, title = (width, round(part * np.ptp(_HIGH))), "the picture, and what is far beside it"
+        picture = paper.panel(size, _SHOWN, _HIGH, title)
+        size = (width, round(part * np.ptp(_AHEAD)))
+        above = paper.panel(size, _SHOWN, _AHEAD, "the same from above")
         _draw_picture(picture, ends, ways)
         angle = _angle(ways)
         _draw_above(above, ends, ways, angle)
         (a, _), (b, _) = ways / _F
         said = f"The left wall runs along [{a:.2f} 0 1], the right one along [{b:.2f} 0 1]"
-        return Drawing(
-            paper.join((picture,), (above,)),
-            f"{said}: the angle between them is {angle:.1f}°.",
-        )
+        said += f": the angle between them is {angle:.1f}°."
+        return Drawing(paper.join((picture,), (above,)), said)
 
-    drags = {name: lambda _, at, name=name: {name: float(at[0])} for name in ("left", "right")}
+    drags = {name: placed(name) for name in ("left", "right")}
     return Model("protractor", about, settings, draw, drags)
 
 
@@ -82,9 +73,8 @@ def _draw_picture(panel: Panel, ends: Array, ways: Array) -> None:
     panel.line(frame[[0, 1, 2, 3, 0]], MUTED, 1)
     panel.text([_SHOWN[1] - 16, row + 64], "horizon", IDEAL, anchor="rm", size=13)
     for name, end, aside in zip(("left", "right"), ends, (-220, -20), strict=True):
-        panel.mark([end, row], "estimated", 7)
-        panel.grip(name, f"the vanishing point of the {name} wall", [end, row], 5)
-        said = f"u = {end:.0f}".replace("-", "−")
+        panel.grip(name, f"the vanishing point of the {name} wall", [end, row], 5, "estimated", 7)
+        said = f"u = {end:.0f}"
         panel.text([max(end + aside, _SHOWN[0] + 16), row - 66], said, ESTIMATED, size=13)
 
 
@@ -98,9 +88,8 @@ def _draw_above(panel: Panel, ends: Array, ways: Array, angle: float) -> None:
     panel.polygons([rim], _DISC)
     panel.line([*rim, rim[0]], MUTED, 1)
     panel.segments(np.stack([rim, eye + 0.92 * (rim - eye)], axis=1), MUTED, 1)
-    panel.polygons(
-        [corner + _LONG * np.array([[0, 0], units[0], units.sum(axis=0), units[1]])], _ROOF
-    )
+    roof = np.array([[0, 0], units[0], units.sum(axis=0), units[1]])
+    panel.polygons([corner + _LONG * roof], _ROOF)
     panel.line([[_SHOWN[0], _F], [_SHOWN[1], _F]], IDEAL, 1.2)
     panel.line([[0, _F], [639, _F]], MUTED, 4)
     panel.text([_SHOWN[0] + 16, _F + 42], "the plane of the picture", IDEAL, size=13)

@@ -5,8 +5,7 @@ import numpy as np
 from cvnotes.base import Array
 from cvnotes.pictures import course
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
-from cvnotes.show.explorations.paper import Panel, Paper
-from cvnotes.show.explorations.strokes import circle
+from cvnotes.show.explorations.paper import Panel, Paper, circle
 from cvnotes.show.explorations.votes import slopes, window_at
 from cvnotes.show.style import ESTIMATED, FAINT, IDEAL, LENS, MUTED
 
@@ -24,15 +23,10 @@ def push_model() -> Model:
         Setting("place", "place", 1, 3, 1, 1, "where the window lies", names=tuple(_PLACES)),
         Setting("angle", "direction d (°)", 0, 360, 1, 40, "from the right, clockwise"),
     )
-    about = (
-        "A window of 7 × 7 pixels of a photograph, and where it is pushed to; squares as large as "
-        "the squares of its changes; and their sum as a curve round the middle, by the direction."
-    )
-
-    def turned(_: Values, at: Array) -> Values:
-        return {"angle": float(np.degrees(np.arctan2(at[1], at[0])) % 360)}
-
-    return Model("push", about, settings, _draw, {"d": turned})
+    about = """A window of 7 × 7 pixels of a photograph, and where it is pushed to; squares as large
+    as the squares of its changes; and their sum as a curve round the middle, by the direction."""
+    drags = {"d": lambda _, at: {"angle": np.degrees(np.arctan2(at[1], at[0])) % 360}}
+    return Model("push", about, settings, _draw, drags)
 
 
 def changes_at(place: str) -> Array:
@@ -45,11 +39,9 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     change, way = changes_at(place)[:, : angle + 1], circle(361)[angle]
     sums = np.sum(change**2, axis=0)
     panels = _photo(paper, place, way), _changes(paper, change[:, -1]), _traced(paper, sums)
-    return Drawing(
-        paper.join(panels),
-        f"{place.capitalize()}, d at {angle}°: the sum of the squares is {sums[-1]:.0f}. "
-        f"From 0° to here the largest is {sums.max():.0f}, the smallest {sums.min():.0f}.",
-    )
+    said = f"""{place.capitalize()}, d at {angle}°: the sum of the squares is {sums[-1]:.0f}. From
+    0° to here the largest is {sums.max():.0f}, the smallest {sums.min():.0f}."""
+    return Drawing(paper.join(panels), said)
 
 
 def _photo(paper: Paper, place: str, way: Array) -> Panel:
@@ -63,8 +55,7 @@ def _photo(paper: Paper, place: str, way: Array) -> Panel:
     panel.line(circle(91), MUTED, 1)
     panel.line(np.outer([0, 1], way), ESTIMATED, 2.5)
     panel.text(1.8 * way, "d", ESTIMATED, anchor="mm", size=17)
-    panel.mark(way, "estimated", 5)
-    panel.grip("d", "the direction d, to be turned", way, 2)
+    panel.grip("d", "the direction d, to be turned", way, 2, "estimated", 5)
     return panel
 
 
@@ -82,9 +73,8 @@ def _changes(paper: Paper, change: Array) -> Panel:
 def _traced(paper: Paper, sums: Array) -> Panel:
     """Draw the sum as far out as it is large, from 0° to d, and the same for pushing back."""
     reach = 96000.0
-    panel = paper.panel(
-        _SIDE, (-reach, reach), (-reach, reach), "all areas, direction by direction"
-    )
+    ends, title = (-reach, reach), "all areas, direction by direction"
+    panel = paper.panel(_SIDE, ends, ends, title)
     for ring in (25, 50, 75):
         panel.line(1000 * ring * circle(91), FAINT, 1)
         panel.text([0, -1000 * ring], f"{ring} 000", MUTED, anchor="mm", size=11)

@@ -33,11 +33,9 @@ _ASIDE = _aside()
 def rail_model() -> Model:
     """Make the model of a point of a rail, and of its line of sight through the picture."""
     settings = (Setting("part", "how far", 0.25, 1, 0.005, 0.4, "1 is infinity, 0.5 is 20 m"),)
-    about = (
-        "A railway from outside, with the camera that sees it and its picture on a glass. Through "
-        "each rail and the camera goes a green sheet; in it an orange line of sight leads to a "
-        "point of the rail. Beside it the picture, with both pixels and the gap between them."
-    )
+    about = """A railway from outside, with the camera that sees it and its picture on a glass.
+    Through each rail and the camera goes a green sheet; in it an orange line of sight leads to a
+    point of the rail. Beside it the picture, with both pixels and the gap between them."""
     return Model("rail", about, settings, _draw, {"rail": _pulled})
 
 
@@ -62,9 +60,7 @@ def _pulled(_: Values, at: Array) -> Values:
 
 def _draw(paper: Paper, values: Values) -> Drawing:
     part = values["part"]
-    space = paper.panel(
-        _SPACE, (-0.5, 589.5), (-0.5, 399.5), "from outside: pull the point along its rail"
-    )
+    space = paper.picture_panel(_SPACE, (590, 400), "from outside: pull the point along its rail")
     space.image(_scene())
     for side, width in ((-1, 1.2), (1, 2.4)):
         place = on_rail(part, side)
@@ -109,7 +105,7 @@ def _scene() -> Drawn:
     """Photograph the railway from outside, and lay the sheets and the picture into it."""
     aside = _finer(_ASIDE)
     eye = Camera(aside.A, pose(aside.R, 1e3 * aside.T), size=aside.size)  # the railway is in mm
-    panel = Paper(_FINER).panel(_SPACE, (-0.5, 589.5), (-0.5, 399.5))
+    panel = Paper(_FINER).picture_panel(_SPACE, (590, 400))
     panel.image(render_scene(rails(), eye, samples=4))
     _lay_sheets(panel, [_GLASS, 1e5])
     H = aside.P @ np.vstack([_GLASS * np.linalg.inv(_finer(_CAMERA).A), [0, 0, 1]])
@@ -147,8 +143,8 @@ def _lay_sheets(panel: Panel, ends: list[float]) -> None:
 def _picture(paper: Paper, part: float) -> Panel:
     """Show the middle of the picture, with both pixels and the gap between them."""
     (left, right), (top, bottom) = _SHOWN
-    x, y = (left - 0.5, right - 0.5), (top - 0.5, bottom - 0.5)
-    panel = paper.panel(_BESIDE, x, y, "in the picture")
+    shown = right - left, bottom - top
+    panel = paper.picture_panel(_BESIDE, shown, "in the picture", (left, top))
     panel.image(_photograph()[_FINER * top : _FINER * bottom, _FINER * left : _FINER * right])
     ends = [_seen(_CAMERA, on_rail(part, side)) for side in (-1, 1)]
     panel.line(ends, LENS, 2)
@@ -167,13 +163,9 @@ def _number(x: float) -> str:
 def _sentence(part: float) -> str:
     u, v = _seen(_CAMERA, on_rail(part))
     if part == 1:
-        return (
-            f"The point is at infinity. Its line of sight is parallel to the rails, and its pixel "
-            f"is ({u:.1f}, {v:.1f}), for both rails."
-        )
+        return f"""The point is at infinity. Its line of sight is parallel to the rails, and its
+        pixel is ({u:.1f}, {v:.1f}), for both rails."""
     away = _HALFWAY * part / (1 - part)
     angle = np.degrees(np.arctan2(np.hypot(_GAUGE / 2, _DOWN), away))
-    return (
-        f"The point is {away:.0f} m ahead. Its line of sight meets the rail at {angle:.2g}°, and "
-        f"its pixel is ({u:.1f}, {v:.1f})."
-    )
+    return f"""The point is {away:.0f} m ahead. Its line of sight meets the rail at {angle:.2g}°,
+    and its pixel is ({u:.1f}, {v:.1f})."""

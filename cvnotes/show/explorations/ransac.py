@@ -12,7 +12,7 @@ from cvnotes.homography import dlt
 from cvnotes.pictures import course, render
 from cvnotes.projective import apply
 from cvnotes.show.explorations.boards import draw_net
-from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
+from cvnotes.show.explorations.model import Drawing, Model, Setting, Values, placed
 from cvnotes.show.explorations.paper import Drawn, Panel, Paper
 from cvnotes.show.style import ESTIMATED, IDEAL, LENS
 
@@ -29,15 +29,12 @@ def ransac_model() -> Model:
     settings = (
         Setting("draw", "draw", 0, _DRAWS, 1, 12, "0 believes all pairs; each other draws four"),
         Setting("wrong", "wrong pairs", 0, 40, 2, 16, "how many of the 54 changed places"),
-        Setting(
-            "threshold", "threshold (px)", 0.3, 6, 0.1, 1.5, "how far a pair that agrees is off"
-        ),
-    )
-    about = (
-        "A board, and where 54 pairs say that its corners are seen; the net of the homography of "
-        "four of them, or of all, and the pairs that agree with it. Beside it how many have agreed "
-        "in each draw so far."
-    )
+        Setting("threshold", "threshold (px)", 0.3, 6, 0.1, 1.5,
+                "how far a pair that agrees is off"),
+    )  # fmt: skip
+    about = """A board, and where 54 pairs say that its corners are seen; the net of the homography
+    of four of them, or of all, and the pairs that agree with it. Beside it how many have agreed in
+    each draw so far."""
 
     @lru_cache(maxsize=1)
     def photograph() -> Drawn:
@@ -50,23 +47,20 @@ def ransac_model() -> Model:
         pairs, fours, put, true = drawn_pairs(wrong)
         agree = np.linalg.norm(put - pairs, axis=-1) < limit
         (left, top), (right, bottom) = _PART
-        panel = paper.panel(
-            (504, 413), (left - 0.5, right - 0.5), (top - 0.5, bottom - 0.5),
-            "the pairs, and one homography",
-        )  # fmt: skip
+        part, title = (right - left, bottom - top), "the pairs, and one homography"
+        panel = paper.picture_panel((504, 413), part, title, (left, top))
         panel.image(photograph())
         _draw_pairs(panel, put[n], pairs, agree[n], true)
         panel.mark(fours[n][: 4 * min(n, 1)], "ideal", 8)
         panel.text([right - 12, top + 24], f"{agree[n].sum()} agree", LENS, anchor="rm", size=22)
         _name_marks(panel, left + 16, bottom - 14)
-        votes = paper.panel(
-            (276, 413), (-4, _DRAWS + 3), (60, -9), "pairs that agree, draw by draw"
-        )
+        title = "pairs that agree, draw by draw"
+        votes = paper.panel((276, 413), (-4, _DRAWS + 3), (60, -9), title)
         counts = agree.sum(axis=1)
         _draw_votes(votes, counts[: n + 1])
         return Drawing(paper.join((panel, votes)), _sentence(n, agree, true))
 
-    return Model("ransac", about, settings, draw, {"draw": lambda _, at: {"draw": float(at[0])}})
+    return Model("ransac", about, settings, draw, {"draw": placed("draw")})
 
 
 @lru_cache(maxsize=8)
@@ -132,13 +126,9 @@ def _draw_votes(panel: Panel, counts: Array) -> None:
 def _sentence(n: int, agree: Mask, true: Mask) -> str:
     counts, wrong = agree.sum(axis=1), int((~true).sum())
     if n == 0:
-        return (
-            f"All 54 pairs are believed, {wrong} of them wrong: {counts[0]} agree with the answer."
-        )
+        said = f"All 54 pairs are believed, {wrong} of them wrong"
+        return f"{said}: {counts[0]} agree with the answer."
     best = int(counts[1 : n + 1].argmax()) + 1
     one = f"{counts[n]} of 54 pairs agree" if counts[n] else "three of the four lie on one line"
-    return (
-        f"Draw {n}: {one}. The largest set so far, of draw {best}, has {counts[best]} pairs, "
-        f"{(agree[best] & true).sum()} of them right. Of all {len(true)} pairs {true.sum()} are "
-        "right."
-    )
+    return f"""Draw {n}: {one}. The largest set so far, of draw {best}, has {counts[best]} pairs,
+    {(agree[best] & true).sum()} of them right. Of all {len(true)} pairs {true.sum()} are right."""

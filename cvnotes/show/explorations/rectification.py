@@ -31,21 +31,16 @@ def rectification_model() -> Model:
         Setting("v", "v (px)", 30, 450, 1, 205, "and its row"),
         Setting("slid", "first slid over (%)", 0, 100, 1, 30, "how much of the second it covers"),
     )
-    about = (
-        "Two pictures of a room, and epipolar lines that belong together. The cameras turn on the "
-        "spot until all these lines are rows that both pictures share. The first picture is slid "
-        "over the second: then no line breaks at the seam."
-    )
+    about = """Two pictures of a room, and epipolar lines that belong together. The cameras turn on
+    the spot until all these lines are rows that both pictures share. The first picture is slid over
+    the second: then no line breaks at the seam."""
 
     def pulled(values: Values, at: Array) -> Values:
         old, new = cameras()[0], turned(values["turned"] / 100)[0]
-        u, v = old.project(old.centre + new.ray(at))
-        return {"u": float(u), "v": float(v)}
+        return dict(zip("uv", old.project(old.centre + new.ray(at)), strict=True))
 
-    def slid(_: Values, at: Array) -> Values:
-        return {"slid": float(at[0]) / 6.4}
-
-    return Model("rectification", about, settings, _draw, {"pixel": pulled, "seam": slid})
+    drags = {"pixel": pulled, "seam": lambda _, at: {"slid": at[0] / 6.4}}
+    return Model("rectification", about, settings, _draw, drags)
 
 
 def turned(part: float) -> tuple[Camera, Camera]:
@@ -55,10 +50,8 @@ def turned(part: float) -> tuple[Camera, Camera]:
     e2 = np.cross(first.R[2] + second.R[2], e1)
     R = np.array([x / np.linalg.norm(x) for x in (e1, e2, np.cross(e1, e2))])
     ways = (part * vector_from_rotation(R @ camera.R.T) for camera in (first, second))
-    one, other = (
-        _attitude(camera, rotation_from_vector(way) @ camera.R)
-        for camera, way in zip((first, second), ways, strict=True)
-    )
+    both = zip((first, second), ways, strict=True)
+    one, other = (_attitude(camera, rotation_from_vector(way) @ camera.R) for camera, way in both)
     return one, other
 
 
@@ -83,10 +76,7 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     row = whole[0].project(W)[1]
     m = np.array([camera.project(W) for camera in now])
     seam = round(6.4 * values["slid"])
-    photos = [
-        _seen(old, new, photo)
-        for old, new, photo in zip(cameras(), now, photographs(), strict=True)
-    ]
+    photos = [*map(_seen, cameras(), now, photographs())]
     photos[1] = np.hstack([photos[0][:, :seam], photos[1][:, seam:]])
     names = "the first camera", "the second camera: pull the seam"
     panels = [paper.picture_panel(_SHOWN, first.size, name) for name in names]
@@ -96,12 +86,10 @@ def _draw(paper: Paper, values: Values) -> Drawing:
             lines = [_line(new, end, v) for new, end in zip(now, whole, strict=True)]
             parts = [_until(lines[0], seam), _until(lines[1], seam, after=True)] if k else lines[:1]
             for part in parts:
-                panel.line(part, "#FFFFFF", width + 0.7)
-                panel.line(part, ESTIMATED, width)
+                panel.line(part, ESTIMATED, width, rim=0.7)
         panel.line([[-9, m[0, 1]], [first.size[0] + 9, m[0, 1]]], IDEAL, 1, dash=5)
     left, right = panels
-    left.mark(m[0], "ideal", 8)
-    left.grip("pixel", "a pixel of the first picture", m[0], 4)
+    left.grip("pixel", "a pixel of the first picture", m[0], 4, "ideal", 8)
     right.text([626, m[0, 1] + 9], "row of the plus", IDEAL, anchor="ra", size=12, rim="white")
     if m[1, 0] > seam:
         right.mark(m[1], "ideal", 8)
@@ -141,7 +129,5 @@ def _sentence(now: tuple[Camera, Camera], m: Array) -> str:
     if abs(u1) > _INFINITE * abs(w):
         return f"{said}: both share their rows, and both epipoles lie at infinity."
     apart = f"{abs(partner - own):.1f} px {'lower' if partner > own else 'higher'}"
-    return (
-        f"{said}, {'the same row' if round(abs(partner - own), 1) == 0 else apart}. The "
-        f"epipoles lie at ({u1:.0f}, {v1:.0f}) and ({u2:.0f}, {v2:.0f})."
-    )
+    return f"""{said}, {"the same row" if round(abs(partner - own), 1) == 0 else apart}. The
+    epipoles lie at ({u1:.0f}, {v1:.0f}) and ({u2:.0f}, {v2:.0f})."""

@@ -8,12 +8,13 @@ from cvnotes.base import Array
 from cvnotes.calibration.refinement import solve_by_schur, take_step
 from cvnotes.pictures import course
 from cvnotes.show.explorations.finding import Finding, alike, rms
-from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
+from cvnotes.show.explorations.model import Drawing, Model, Setting, Values, placed
 from cvnotes.show.explorations.paper import GRID, Panel, Paper
 from cvnotes.show.style import ESTIMATED, IDEAL, LENS
 
-_SENSOR, _BESIDE, _LONG = (500, 375), (270, 375), 16  # px; of an arrow as long as the RMS
-_BAR = 60  # px: the bar that shows the scale is as long as this at most
+_SENSOR, _BESIDE = (500, 375), (270, 375)  # px
+_LONG = 20  # px of the photographs: about so long is an arrow as long as the RMS drawn
+_BAR = 75  # px of the photographs: the bar that shows the scale is as long as this at most
 _SURE = 1e12  # how much more one wish about k1 weighs than all pictures
 
 
@@ -22,11 +23,9 @@ def residuals_model() -> Model:
     settings = (
         Setting("k1", "k₁", -0.4, 0.1, 0.01, 0, "the lens that is believed; the rest fits"),
     )
-    about = (
-        "All corners of twelve photographs on one sensor, each with an arrow to where the best "
-        "camera with this k₁ puts it. Beside it the RMS of all arrows against k₁."
-    )
-    return Model("residuals", about, settings, _draw, {"k1": lambda _, at: {"k1": float(at[0])}})
+    about = """All corners of twelve photographs on one sensor, each with an arrow to where the best
+    camera with this k₁ puts it. Beside it the RMS of all arrows against k₁."""
+    return Model("residuals", about, settings, _draw, {"k1": placed("k1")})
 
 
 @lru_cache(maxsize=1)
@@ -64,10 +63,10 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     frame = np.array([[0, 0], [1, 0], [1, 1], [0, 1]]) * _finding().size - 0.5
     sensor.polygons([frame], "#F4F4F2")
     _scale(sensor, times)
-    sensor.arrows(m, times * sensor.pixel * misses.reshape(-1, 2), ESTIMATED, 1.2)
+    sensor.arrows(m, times * misses.reshape(-1, 2), ESTIMATED, 1.2)
     said = f"With k₁ = {k1:g} the RMS is {missed:.3g} px. Neighbouring arrows are"
     what = ("", "the lens is wrong") if agree > 0.2 else (" not", "what is left is noise")
-    sentence = f"{said}{what[0]} alike: {what[1]}.".replace("-", "−")
+    sentence = f"{said}{what[0]} alike: {what[1]}."
     return Drawing(paper.join((sensor, _curve(paper, k1, missed))), sentence)
 
 
@@ -75,7 +74,7 @@ def _scale(sensor: Panel, times: float) -> None:
     """Draw a bar of a round length as long as such an arrow, below the corners."""
     power = 10.0 ** np.floor(np.log10(_BAR / times))
     length = max(n * power for n in (1, 2, 5) if n * power * times <= _BAR)
-    long = length * times * sensor.pixel
+    long = length * times
     end = np.array([_finding().size[0] - 20.0, _finding().size[1] - 22.0])
     sensor.line([end - [long, 0], end], IDEAL, 2)
     sensor.segments([[at - [0, 6], at + [0, 6]] for at in (end - [long, 0], end)], IDEAL, 2)
@@ -90,6 +89,5 @@ def _curve(paper: Paper, k1: float, missed: float) -> Panel:
         panel.text([-0.45, power], f"{10.0**power:g}")
     panel.line(np.column_stack([_valley()[:, 0], np.log10(_valley()[:, 1])]), LENS, 2)
     here = np.array([k1, np.log10(missed)])
-    panel.mark(here, "estimated", 8)
-    panel.grip("k1", "k₁, to be moved along the curve", here, 4)
+    panel.grip("k1", "k₁, to be moved along the curve", here, 4, "estimated", 8)
     return panel

@@ -7,8 +7,7 @@ import numpy as np
 from cvnotes.camera import Lens
 from cvnotes.show.explorations.lens import bent_room, draw_fold, polynomial, seen_radius
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
-from cvnotes.show.explorations.paper import Panel, Paper
-from cvnotes.show.explorations.strokes import circle
+from cvnotes.show.explorations.paper import Panel, Paper, circle
 from cvnotes.show.style import ESTIMATED, FAINT, IDEAL, LENS, MUTED
 
 _LENS, _BESIDE = (470, 430), (270, 201)
@@ -30,11 +29,9 @@ def rim_model() -> Model:
         Setting("ring", "r", 0.1, 0.87, 0.01, 0.7, "the ideal radius of the disc"),
         Setting("k1", "k₁", -1.5, 0, 0.01, -1.33, "radial"),
     )
-    about = (
-        "A room through a lens, and on it a disc of cells. Up to the lens's rim it is blue; what "
-        "the polynomial folds back over it is orange. Beside it the same disc on the plane z = 1, "
-        "and the observed radius against the ideal one."
-    )
+    about = """A room through a lens, and on it a disc of cells. Up to the lens's rim it is blue;
+    what the polynomial folds back over it is orange. Beside it the same disc on the plane z = 1,
+    and the observed radius against the ideal one."""
     drags = {"ring": lambda _, at: {"ring": float(np.hypot(*at))}}
     return Model("rim", about, settings, _draw, drags)
 
@@ -43,12 +40,9 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     lens, r = Lens((values["k1"],)), values["ring"]
     seen = float(seen_radius(lens, np.array(r)))
     other = _other(lens, r, seen)
-    return Drawing(
-        paper.join(
-            (_seen(paper, lens, r, other), [_plane(paper, lens, r), _curve(paper, lens, r, other)])
-        ),
-        _sentence(lens, r, seen, other),
-    )
+    column = [_plane(paper, lens, r), _curve(paper, lens, r, other)]
+    drawn = paper.join((_seen(paper, lens, r, other), column))
+    return Drawing(drawn, _sentence(lens, r, seen, other))
 
 
 def _other(lens: Lens, r: float, seen: float) -> float:
@@ -104,8 +98,7 @@ def _plane(paper: Paper, lens: Lens, r: float) -> Panel:
     panel.line(r * circle(121), MUTED, 1.5)
     if lens.max_radius < r:
         panel.line(lens.max_radius * circle(121), ESTIMATED, 1.5)
-    panel.mark([r, 0], "ideal", 9)
-    panel.grip("ring", "the radius of the disc", [r, 0], 2)
+    panel.grip("ring", "the radius of the disc", [r, 0], 2, "ideal", 9)
     return panel
 
 

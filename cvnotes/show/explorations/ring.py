@@ -4,8 +4,7 @@ import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
-from cvnotes.show.explorations.paper import Panel, Paper
-from cvnotes.show.explorations.strokes import circle
+from cvnotes.show.explorations.paper import Panel, Paper, circle
 from cvnotes.show.style import ESTIMATED, FAINT, IDEAL, MUTED, WORLD
 
 _NUMBERS = np.array([0, 1, 2, 4, 8, -8, -4, -2, -1])
@@ -17,11 +16,9 @@ def ring_model() -> Model:
     settings = (
         Setting("angle", "angle (°)", -90, 270, 0.5, 45, "how far the line has turned from x = 0"),
     )
-    about = (
-        "Left, lines through the origin: each is one class of pairs, and crosses w = 1 at its "
-        "number x. Right, a ring on the line of these numbers: where the dashed join of x and the "
-        "ring's top crosses the ring is the mark of x."
-    )
+    about = """Left, lines through the origin: each is one class of pairs, and crosses w = 1 at its
+    number x. Right, a ring on the line of these numbers: where the dashed join of x and the ring's
+    top crosses the ring is the mark of x."""
 
     def draw(paper: Paper, values: Values) -> Drawing:
         turn = np.radians(values["angle"])
@@ -63,7 +60,7 @@ def _draw_pairs(panel: Panel, way: Array, x: float, colour: str, angle: float) -
         panel.mark([x, 1], "world", 9)
         side = 1 if x >= 0 else -1  # the line leads up to this side, the number is on the other
         where = [x - 0.13 * side, 1.25]
-        panel.text(where, _number(x), WORLD, anchor="rm" if x >= 0 else "lm", size=13)
+        panel.text(where, f"{x:.3g}", WORLD, anchor="rm" if x >= 0 else "lm", size=13)
     held = min(1.9, 1.42 / max(-way[1], 0.1)) * way  # in the panel, with its ring
     panel.polygons([held + 5 * panel.pixel * circle(24)], colour)
     panel.grip("line", "the class, a line through the origin", held, 5)
@@ -78,9 +75,9 @@ def _draw_ring(panel: Panel, way: Array, x: float) -> None:
         mark = _dot(np.array([number, 1]))
         panel.mark(mark, "world", 5)
         if abs(number) <= 1:
-            panel.text([number, -0.15], _number(number), anchor="mm", size=11)
+            panel.text([number, -0.15], f"{number:.3g}", anchor="mm", size=11)
         if number:
-            panel.text([0, 0.5] + 1.18 * (mark - [0, 0.5]), _number(number), anchor="mm", size=11)
+            panel.text([0, 0.5] + 1.18 * (mark - [0, 0.5]), f"{number:.3g}", anchor="mm", size=11)
     dot = _dot(way)
     if np.isfinite(x):
         panel.line(_ray(x), WORLD, 2, dash=5)  # not the black line of the pairs
@@ -105,7 +102,7 @@ def _draw_angle(panel: Panel, angle: float, radius: float) -> None:
     panel.line(arc, MUTED, 1)
     if abs(angle) > 15:
         away = 1 + 22 * panel.pixel / radius
-        panel.text(away * arc[30], f"{_number(angle)}°", anchor="mm")
+        panel.text(away * arc[30], f"{angle:.3g}°", anchor="mm")
 
 
 def _ray(x: float) -> Array:
@@ -114,17 +111,11 @@ def _ray(x: float) -> Array:
     return np.array([[0, 1], [part * x, 1 - part]])
 
 
-def _number(x: float) -> str:
-    return f"{x:.3g}".replace("-", "−")
-
-
 def _sentence(angle: float, x: float) -> str:
     if not np.isfinite(x):
-        return (
-            f"At {angle:g}° the line is level, [1 0]: it never reaches w = 1. Its mark is the top "
-            "of the ring, the same from both sides: the point at infinity."
-        )
+        return f"""At {angle:g}° the line is level, [1 0]: it never reaches w = 1. Its mark is the
+        top of the ring, the same from both sides: the point at infinity."""
     said = f"At {angle:g}° the line crosses w = 1 at x = {x:.4g}."
     if abs(x) < 20:
         return said
-    return f"{said} As far beyond the level line, it crosses at {_number(-x)}."
+    return f"{said} As far beyond the level line, it crosses at {-x:.3g}."

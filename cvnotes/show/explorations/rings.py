@@ -3,9 +3,8 @@
 import numpy as np
 
 from cvnotes.base import Array
-from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
-from cvnotes.show.explorations.paper import Paper
-from cvnotes.show.explorations.strokes import circle
+from cvnotes.show.explorations.model import Drawing, Model, Setting, Values, placed
+from cvnotes.show.explorations.paper import Paper, circle
 from cvnotes.show.style import ESTIMATED, LENS, MUTED
 
 _SIZE, _FINENESS = 240, 0.0036  # px, and rings per px for each px from the middle
@@ -22,11 +21,9 @@ def rings_model() -> Model:
         Setting("blur", "blur σ (new px)", 0, 1, 0.05, 0, "blurred first: 0.5 is the usual cure"),
         Setting("place", "look at (px)", 0, 104, 1, 90, "how far right of the middle"),
     )
-    about = (
-        "Rings, finer and finer outwards; the same picture shrunk; and a piece of one row of both: "
-        "the grey values that were there, and those that the new pixels take."
-    )
-    drags = {"place": lambda _, at: {"place": float(at[0]) - _MIDDLE}}
+    about = """Rings, finer and finer outwards; the same picture shrunk; and a piece of one row of
+    both: the grey values that were there, and those that the new pixels take."""
+    drags = {"place": placed("place", start=(_MIDDLE, 0))}
     return Model("rings", about, settings, _draw, drags)
 
 
@@ -62,24 +59,19 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     left = paper.picture_panel((360, 360), (_SIZE, _SIZE), f"{_SIZE} × {_SIZE} pixels")
     left.image((8 * np.rint(old / 8)).clip(0, 255).astype(np.uint8))
     held = np.array([_MIDDLE + place, _HANDLE])
-    for ink, width in (("white", 5.0), (ESTIMATED, 2)):  # a stick from the box to its handle
-        left.line(np.array([[held[0], _MIDDLE + y + 7], held]), ink, width)
+    stick = np.array([[held[0], _MIDDLE + y + 7], held])  # from the box to its handle
+    left.line(stick, ESTIMATED, 2, rim=3)
     left.polygons([held + 13 * left.pixel * circle(41)], "white")
-    left.mark(held, "estimated", 7)
-    left.grip("place", "where to look along the row", held, 2)
-    right = paper.panel(
-        (360, 360), (-0.5, _SIZE - 0.5), (-0.5, _SIZE - 0.5),
-        "shrunk by three; in blue 46 px to each side",
-    )  # fmt: skip
+    left.grip("place", "where to look along the row", held, 2, "estimated", 7)
+    title = "shrunk by three; in blue 46 px to each side"
+    right = paper.picture_panel((360, 360), (_SIZE, _SIZE), title)
     right.image((8 * np.rint(new / 8)).clip(0, 255).astype(np.uint8), smooth=False)
     frame = _MIDDLE + _FINEST * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1], [-1, -1]])
-    for ink, thick in (("white", 6.0), (LENS, 2.5)):
-        right.line(frame, ink, thick)
+    right.line(frame, LENS, 2.5, rim=3.5)
     low, high = _MIDDLE + place + np.array([-_AROUND, _AROUND])
     for panel in (left, right):
         around = np.array([[low, -7], [high, -7], [high, 7], [low, 7], [low, -7]])
-        for ink, width in (("white", 6), (ESTIMATED, 2.5)):  # a white rim: seen on rings, too
-            panel.line(around + [0, _MIDDLE + y], ink, width)
+        panel.line(around + [0, _MIDDLE + y], ESTIMATED, 2.5, rim=3.5)
     at = np.column_stack([_SHRINK * (np.arange(len(new)) + 0.5) - 0.5, new[row]])
     u = np.linspace(low, high, 600)
     there, below = np.column_stack([u, rings(u - _MIDDLE, np.full_like(u, y))]), []
@@ -92,10 +84,8 @@ def _draw(paper: Paper, values: Values) -> Drawing:
         panel.mark(at[(at[:, 0] > low) & (at[:, 0] < high)], "estimated", 5)
         below.append(panel)
     wide = np.maximum(*np.abs(np.meshgrid(*2 * [line[1::_SHRINK]]))) < _FINEST
-    left_of = [
-        f"{new[part].std():.0f} of {old[1::_SHRINK, 1::_SHRINK][part].std():.0f}"
-        for part in (wide, ~wide)
-    ]
+    before = old[1::_SHRINK, 1::_SHRINK]
+    left_of = [f"{new[part].std():.0f} of {before[part].std():.0f}" for part in (wide, ~wide)]
     said = f"{_sentence(_FINENESS * place * _SHRINK)} Inside the blue frame "
     said += f"{left_of[0]} grey levels of contrast are left, outside {left_of[1]}."
     return Drawing(paper.join((left, right), tuple(below)), said)

@@ -11,9 +11,8 @@ from cvnotes.base import Array
 from cvnotes.camera import Camera, horizon, look_at
 from cvnotes.pictures import blocks, course, depth_map, render_scene
 from cvnotes.projective import from_homogeneous, to_homogeneous
-from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
-from cvnotes.show.explorations.paper import Drawn, Panel, Paper
-from cvnotes.show.explorations.strokes import circle
+from cvnotes.show.explorations.model import Drawing, Model, Setting, Values, nearest, placed
+from cvnotes.show.explorations.paper import Drawn, Panel, Paper, circle
 from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED
 
 _CAMERA = Camera(course.camera().A, look_at([12500, -1200, -2500], [1200, -2300, 12500]))
@@ -24,9 +23,8 @@ _HORIZON = float(-_LEVEL[2] / _LEVEL[1])  # its row: the camera is not rolled
 _WIDTH, _TRIANGLES = 0.16, 36  # m, of the rod; of three blocks
 _LATE = 540  # px: farther to the right the border leaves no room for words
 _BORDER = (-440, 80)  # px: so much more is shown on the left, and less of the sky
-_WIDE = Camera(
-    [[1, 0, -_BORDER[0]], [0, 1, -_BORDER[1]], [0, 0, 1]] @ _CAMERA.A, _CAMERA.G, size=(1080, 400)
-)
+_SHIFTED = [[1, 0, -_BORDER[0]], [0, 1, -_BORDER[1]], [0, 0, 1]] @ _CAMERA.A
+_WIDE = Camera(_SHIFTED, _CAMERA.G, size=(1080, 400))
 
 
 def rod_model() -> Model:
@@ -36,11 +34,9 @@ def rod_model() -> Model:
         Setting("v", "foot, v (px)", 352, 464, 1, 382, "where it is, downwards"),
         Setting("height", "height (m)", 1, _TALLEST, 0.1, 4, "the rod's height"),
     )
-    about = (
-        "A rod with a band for each metre stands on the ground before three blocks; the black line "
-        "is the horizon. The line through its foot and the yellow box's meets it in e, and from e "
-        "a line over the box brings 2 m to the rod."
-    )
+    about = """A rod with a band for each metre stands on the ground before three blocks; the black
+    line is the horizon. The line through its foot and the yellow box's meets it in e, and from e a
+    line over the box brings 2 m to the rod."""
 
     @lru_cache(maxsize=1)
     def photographed() -> tuple[Drawn, Array]:
@@ -54,8 +50,8 @@ def rod_model() -> Model:
         photo, depths = photographed()
         foot, height = np.array([values["u"], values["v"]]), values["height"]
         left, width = (0, 480) if paper.narrow else (_BORDER[0], 810)
-        x, y = (left - 0.5, 639.5), (_BORDER[1] - 0.5, 479.5)
-        panel = paper.panel((width, 300), x, y, "pull the rod by its foot")
+        part, corner = (640 - left, 480 - _BORDER[1]), (left, _BORDER[1])
+        panel = paper.picture_panel((width, 300), part, "pull the rod by its foot", corner)
         panel.image(photo[:, left - _BORDER[0] :])
         panel.text([_BORDER[0] + 14, _BORDER[1] + 16], "beyond the photograph")
         panel.line([[-460, _HORIZON], [660, _HORIZON]], IDEAL, 1)
@@ -69,16 +65,11 @@ def rod_model() -> Model:
         panel.grip("top", "the top of the rod", top, 4)
         return Drawing(paper.join((panel,)), _sentence(foot, height, e))
 
-    def carried(_: Values, at: Array) -> Values:
-        return {"u": float(at[0]), "v": float(at[1])}
+    def places(values: Values, heights: Array) -> Array:
+        return at_height(np.array([values["u"], values["v"]]), heights)
 
-    def stretched(values: Values, at: Array) -> Values:
-        """Make the rod as high as its point that is nearest to where it is pulled."""
-        heights = np.linspace(1, _TALLEST, 141)
-        rod = at_height(np.array([values["u"], values["v"]]), heights)
-        return {"height": float(heights[np.linalg.norm(rod - at, axis=1).argmin()])}
-
-    return Model("rod", about, settings, draw, {"foot": carried, "top": stretched})
+    stretched = nearest("height", np.linspace(1, _TALLEST, 141), places)
+    return Model("rod", about, settings, draw, {"foot": placed("u", "v"), "top": stretched})
 
 
 def at_height(foot: Array, height: npt.ArrayLike) -> Array:

@@ -4,9 +4,8 @@ import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.camera import rotation_from_vector
-from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
-from cvnotes.show.explorations.paper import Panel, Paper
-from cvnotes.show.explorations.strokes import circle
+from cvnotes.show.explorations.model import Drag, Drawing, Model, Setting, Values
+from cvnotes.show.explorations.paper import Panel, Paper, circle
 from cvnotes.show.space.directions import sheet
 from cvnotes.show.style import ESTIMATED, FAINT, IDEAL, LENS, MUTED, WORLD, mixed
 
@@ -21,20 +20,16 @@ _Q = np.cross(_N, _W)
 def rodrigues_model() -> Model:
     """Make the model of a vector that is turned about an upright axis."""
     settings = (Setting("theta", "angle θ (°)", -180, 180, 1, 50, "how far w is turned about n"),)
-    about = (
-        "A vector w turned about an axis n: its part along n stays, the tip of its part p across n "
-        "runs on a circle, towards n × w. Beside it the circle from above, seen against n."
-    )
+    about = """A vector w turned about an axis n: its part along n stays, the tip of its part p
+    across n runs on a circle, towards n × w. Beside it the circle from above, seen against n."""
 
     def in_space(_: Values, at: Array) -> Values:
         """Find the angle on the circle, which the sheet shows as an ellipse."""
         across = np.linalg.solve(_SHEET @ np.array([_P, _Q]).T, at - _SHEET @ _ALONG)
         return {"theta": float(np.degrees(np.arctan2(across[1], across[0])))}
 
-    def from_above(_: Values, at: Array) -> Values:
-        return {"theta": float(np.degrees(np.arctan2(at[1], at[0])))}
-
-    drags = {"tip in space": in_space, "tip from above": from_above}
+    drags: dict[str, Drag] = {"tip in space": in_space}
+    drags["tip from above"] = lambda _, at: {"theta": np.degrees(np.arctan2(at[1], at[0]))}
     return Model("rodrigues", about, settings, _draw, drags)
 
 
@@ -48,10 +43,8 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     c, s = np.array([turned @ _P, turned @ _Q]) / (_P @ _P)
     x, y, z = turned
     across, towards = (f"{'−' if part < 0 else '+'} {abs(part):.2f}" for part in (c, s))
-    said = (
-        f"w = (3, 0, 2) becomes (0, 0, 2) {across} · (3, 0, 0) {towards} · (0, 3, 0) "
-        f"= ({x:.2f}, {y:.2f}, {z:.0f})."
-    )
+    said = f"""w = (3, 0, 2) becomes (0, 0, 2) {across} · (3, 0, 0) {towards} · (0, 3, 0) =
+    ({x:.2f}, {y:.2f}, {z:.0f})."""
     return Drawing(paper.join((space, above)), said)
 
 
@@ -79,8 +72,7 @@ def _draw_space(panel: Panel, turned: Array, theta: float) -> None:
     panel.text(_SHEET @ (4.8 * _N) + [0.2, 0], "n", IDEAL, size=15)
     panel.text(0.55 * _SHEET @ _W + [0.15, 0.35], "w", IDEAL, size=15)
     tip = _SHEET @ turned
-    panel.mark(tip, "estimated", 7)
-    panel.grip("tip in space", "the tip, to be turned about n", tip, 5)
+    panel.grip("tip in space", "the tip, to be turned about n", tip, 5, "estimated", 7)
 
 
 def _draw_above(panel: Panel, turned: Array, theta: float) -> None:
@@ -103,5 +95,4 @@ def _draw_above(panel: Panel, turned: Array, theta: float) -> None:
         beside = [x + 0.2 * side, y / 2]
         panel.text(beside, "sin θ (n × w)", LENS, anchor="lm" if side > 0 else "rm", size=14)
     panel.text(_arc(1, theta / 2)[-1], "θ", ESTIMATED, anchor="mm", size=15)
-    panel.mark([x, y], "estimated", 7)
-    panel.grip("tip from above", "the tip, to be turned about n", [x, y], 5)
+    panel.grip("tip from above", "the tip, to be turned about n", [x, y], 5, "estimated", 7)

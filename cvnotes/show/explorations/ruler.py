@@ -25,10 +25,8 @@ _LONGER = 4  # times as long as the ± is the bar that shows it
 def ruler_model() -> Model:
     """Make the model of poles beside a railway, and of one that is pulled along their row."""
     low, high = float(_END[1]) + 2, float(np.floor(_FEET[0, 1]))
-    about = (
-        "Poles beside a railway, and an orange pole that moves along their row; beside it the same "
-        "from above, with what the picture alone says about the orange pole's distance."
-    )
+    about = """Poles beside a railway, and an orange pole that moves along their row; beside it the
+    same from above, with what the picture alone says about the orange pole's distance."""
     settings = (
         Setting("row", "row of the foot (px)", low, high, 0.1, 258, "where its foot is clicked"),
     )
@@ -47,8 +45,8 @@ def ruler_model() -> Model:
         foot = _FEET[0] + part * (_END - _FEET[0])
         clicked = foot[1] + _CLICK * np.array([0, 1, -1])
         t, near, far = behind_the_first(clicked).tolist()
-        x, y = (_LEFT - 0.5, _LEFT + _SIZE[0] - 0.5), (_TOP - 0.5, _TOP + _SIZE[1] - 0.5)
-        panel = paper.panel((440, 330), x, y, "the picture: pull the orange pole by its foot")
+        title = "the picture: pull the orange pole by its foot"
+        panel = paper.picture_panel((440, 330), _SIZE, title, (_LEFT, _TOP))
         panel.image(photograph())
         panel.line([_FEET[0], _END], IDEAL, 1, dash=4)
         panel.line([foot, _TOP_OF_FIRST + part * (_END - _TOP_OF_FIRST)], ESTIMATED, 3)
@@ -60,12 +58,8 @@ def ruler_model() -> Model:
         panel.mark(foot, "estimated", 9)
         panel.text(foot + [11, 10], "c", ESTIMATED, anchor="mm", size=14)
         panel.grip("foot", "the foot of the orange pole", foot, 4)
-        plan = paper.panel(
-            (310, 330),
-            (-8.5, 2.7),
-            (_FARTHEST, -12),
-            f"from above (m), stretched across; bar: {_LONGER} × ±",
-        )
+        title = f"from above (m), stretched across; bar: {_LONGER} × ±"
+        plan = paper.panel((310, 330), (-8.5, 2.7), (_FARTHEST, -12), title)
         _draw_plan(plan, t, near, far)
         return Drawing(paper.join((panel, plan)), _sentence(foot, t, far - near))
 

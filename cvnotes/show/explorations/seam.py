@@ -14,7 +14,7 @@ from cvnotes.camera import Camera, intrinsics, pose, rotation_from_vector
 from cvnotes.pictures import Scene, radiance, room
 from cvnotes.pictures.meshes import box, join
 from cvnotes.projective import apply
-from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
+from cvnotes.show.explorations.model import Drawing, Model, Setting, Values, nearest
 from cvnotes.show.explorations.paper import Drawn, Paper, Range
 from cvnotes.show.style import ESTIMATED, LENS, MUTED
 
@@ -42,29 +42,21 @@ def seam_model() -> Model:
     """Make the model of two photographs of a room, between which the camera has only turned."""
     settings = (
         Setting("alpha", "α (px)", _LOWEST, _HIGHEST, _STEP, 300, "of the camera that is assumed"),
-        Setting(
-            "aside", "step aside (mm)", 0, _FARTHEST, _STRIDE, 0,
-            "how far to the right the camera stepped between the photographs",
-        ),
+        Setting("aside", "step aside (mm)", 0, _FARTHEST, _STRIDE, 0,
+                "how far to the right the camera stepped between the photographs"),
     )  # fmt: skip
-    about = (
-        "Two photographs of a room by a camera that has turned to the right, and perhaps stepped "
-        "aside; a green post stands near. The second is laid "
-        "over the first as a camera with the chosen focal length would have it; beside it a part "
-        "of both, enlarged, and by how much they differ, against the focal length."
-    )
-    return Model("seam", about, settings, _draw, {"middle": _pulled})
+    about = """Two photographs of a room by a camera that has turned to the right, and perhaps
+    stepped aside; a green post stands near. The second is laid over the first as a camera with the
+    chosen focal length would have it; beside it a part of both, enlarged, and by how much they
+    differ, against the focal length."""
+    tried = np.arange(_LOWEST, _HIGHEST + 1.0, _STEP)
+    drags = {"middle": nearest("alpha", tried, lambda _, tried: np.array([*map(_place, tried)]))}
+    return Model("seam", about, settings, _draw, drags)
 
 
 def scene() -> Scene:
     """Return the room, and near in it a green post."""
     return join(room(), box((480, 580), (70, 1600), (3000, 3100), (0.30, 0.62, 0.36)))
-
-
-def _pulled(_: Values, at: Array) -> Values:
-    tried = np.arange(_LOWEST, _HIGHEST + 1.0, _STEP)
-    places = [_place(alpha) for alpha in tried]
-    return {"alpha": float(tried[np.linalg.norm(np.array(places) - at, axis=1).argmin()])}
 
 
 def _place(alpha: float) -> Array:
@@ -89,10 +81,8 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     curve.line([[50, 0], [1250, 0]], MUTED, 0.8)
     curve.line([(tried, _apart(tried, aside)) for tried in _TRIED], ESTIMATED, 1.5)
     curve.mark([alpha, apart], "estimated", 7)
-    sentence = (
-        f"With α = {alpha:.0f} px the two photographs differ, where one lies over the other, by "
-        f"{apart:.1f} grey levels on average."
-    )
+    sentence = f"""With α = {alpha:.0f} px the two photographs differ, where one lies over the
+    other, by {apart:.1f} grey levels on average."""
     return Drawing(paper.join((over, [close, curve])), sentence)
 
 

@@ -11,6 +11,7 @@ from cvnotes.calibration.jacobian import jacobian
 from cvnotes.calibration.refinement import Problem
 from cvnotes.camera import Camera, intrinsics, look_at
 from cvnotes.pictures import course
+from cvnotes.show.explorations.boards import squares_between
 from cvnotes.show.explorations.finding import rms
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
 from cvnotes.show.explorations.paper import Panel, Paper
@@ -89,11 +90,9 @@ def sheets_model() -> Model:
     amount = Setting("amount", "right camera's sheet ×", 0, _MOST, 0.05, 1, said)
     said = "along which axes corners may leave their places: within the sheet, or up and down"
     part = Setting("part", "use", 1, 3, 1, 1, said, names=tuple(_PARTS))
-    about = (
-        "A printed sheet in space, its faults drawn a hundred times as large: blue as the left "
-        "camera of a real pair finds it, orange so much of what the right one finds; and the RMS "
-        "of the left camera on the orange sheet."
-    )
+    about = """A printed sheet in space, its faults drawn a hundred times as large: blue as the left
+    camera of a real pair finds it, orange so much of what the right one finds; and the RMS of the
+    left camera on the orange sheet."""
 
     def pulled(values: Values, at: Array) -> Values:
         off = right.off[_part(values)]
@@ -140,11 +139,9 @@ def _put(panel: Panel, off: Array, ink: str) -> None:
     """Draw the sheet in the light, the far squares first, and its shadow as if it were flat."""
     W = course.real_corners().board.points
     panel.polygons([_EYE.project(W[[0, 8, 53, 45]])], _SHADOW)
-    grid = _in_space(off).reshape(6, 9, 3)
-    for j, i in np.ndindex(5, 8):
-        square = grid[[j, j, j + 1, j + 1], [i, i + 1, i + 1, i]]
+    for square, dark in zip(*squares_between(_in_space(off).reshape(6, 9, 3)), strict=True):
         across = np.cross(square[2] - square[0], square[3] - square[1])
         bright = abs(across @ _LIGHT) / np.linalg.norm(across)
-        full = rgb(mixed(ink, "#FFFFFF", 0.12) if (i + j) % 2 == 0 else _WHITE)
+        full = rgb(mixed(ink, "#FFFFFF", 0.12) if dark else _WHITE)
         shade = hexed(255 * min(1.0, 0.40 + 0.68 * bright**1.5) * np.array(full))
         panel.polygons([_EYE.project(square)], shade)

@@ -66,9 +66,8 @@ class Explorer(VBox):
         self.model = model
         self._given = camera, board
         self.sliders = {s.name: _control(s) for s in model.settings}
-        self.reset_button = Button(
-            description="Reset", icon="undo", tooltip="Move every slider back to where it started"
-        )
+        what = "Move every slider back to where it started"
+        self.reset_button = Button(description="Reset", icon="undo", tooltip=what)
         self.sentence, self.matrices = HTML(), HTML()
         self.image = Image(format="png")
         self._drawn: tuple[dict[str, float], Drawing] | None = None
@@ -171,11 +170,8 @@ class Explorer(VBox):
         self._pulled.observe(self._pull, "value")
         here = files("cvnotes.show.explorations")
         script = "\n".join((here / name).read_text("utf-8") for name in _SCRIPTS)
-        output = {
-            "output_type": "display_data",
-            "data": {"application/javascript": script},
-            "metadata": {},
-        }
+        data = {"application/javascript": script}
+        output = {"output_type": "display_data", "data": data, "metadata": {}}
         return Box([self._pulled, self._told, Output(outputs=(output,))], layout=_NO_ROOM)
 
     def _pull(self, change: dict[str, Any]) -> None:
@@ -218,9 +214,6 @@ class PulledPoints(Explorer):
 
     def _folded_too(self) -> list[Any]:
         return [self._numbers]
-
-    def _for_page(self) -> str:
-        return ""  # a page has no function of the reader's
 
 
 def _grid(parts: list[Any]) -> GridBox:

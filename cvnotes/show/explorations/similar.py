@@ -5,8 +5,7 @@ import numpy.typing as npt
 
 from cvnotes.base import Array
 from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
-from cvnotes.show.explorations.paper import Panel, Paper
-from cvnotes.show.explorations.strokes import circle
+from cvnotes.show.explorations.paper import Panel, Paper, circle
 from cvnotes.show.style import CAMERA, IDEAL, LENS, MUTED, WORLD, mixed
 
 _FOOT, _TOP = 1.6, -1.4  # m, the y of a tree's foot and of its top
@@ -30,20 +29,14 @@ def similar_model() -> Model:
         Setting("z", "z (m)", 4, 10, 0.1, 5, "how far the green tree is from the hole"),
         Setting("f", "f (mm)", 4, 9, 0.1, 8, "how far the film is from the hole"),
     )
-    about = (
-        "A dark box with a hole, from the side: light from a tree goes through the hole to the "
-        "film, upside down there, upright on the image plane before the hole; a blue triangle of "
-        "height v in a similar green one of height y. Beside it the image plane from before."
-    )
+    about = """A dark box with a hole, from the side: light from a tree goes through the hole to the
+    film, upside down there, upright on the image plane before the hole; a blue triangle of height v
+    in a similar green one of height y. Beside it the image plane from before."""
 
     def draw(paper: Paper, values: Values) -> Drawing:
         z, f = values["z"], values["f"]
-        side = paper.panel(
-            (560, 336),
-            (-150, 410),
-            (-152, 184),
-            "from the side: heights stretched, camera enlarged",
-        )
+        title = "from the side: heights stretched, camera enlarged"
+        side = paper.panel((560, 336), (-150, 410), (-152, 184), title)
         _draw_side(side, z, f)
         plane = paper.panel((244, 336), (-2.0, 3.88), (-3.8, 4.3), "the image plane (mm)")
         _draw_plane(plane, z, f)
@@ -51,7 +44,7 @@ def similar_model() -> Model:
 
     drags = {
         "tree": lambda _, at: {"z": float(at[0]) / _AHEAD},
-        "film": lambda _, at: {"f": -float(at[0]) / _INSIDE},
+        "film": lambda _, at: {"f": -at[0] / _INSIDE},
     }
     return Model("similar", about, settings, draw, drags)
 
@@ -60,9 +53,8 @@ def _draw_tree(panel: Panel, M: Array, at: npt.ArrayLike, pale: float = 0) -> No
     """Draw a tree, its metres taken to the panel by M (2, 2), its axis point to `at`."""
     inks = ["#7A5230", *(ink for *_, ink in _CROWN)]
     parts = [_TRUNK, *(r * circle(40) + [x, y] for x, y, r, _ in _CROWN)]
-    panel.polygons(
-        [part @ M.T + np.asarray(at) for part in parts], [mixed(ink, _SKY, pale) for ink in inks]
-    )
+    parts = [part @ M.T + np.asarray(at) for part in parts]
+    panel.polygons(parts, [mixed(ink, _SKY, pale) for ink in inks])
 
 
 def _draw_side(panel: Panel, z: float, f: float) -> None:
@@ -117,9 +109,8 @@ def _draw_plane(panel: Panel, z: float, f: float) -> None:
     panel.polygons([[[-9, -9], [9, -9], [9, 0], [-9, 0]]], _SKY)
     for part in np.linspace(0, 1, 30).tolist():  # the lawn, paler towards the horizon
         row = 4.3 * part
-        panel.polygons(
-            [[[-9, row], [9, row], [9, 9], [-9, 9]]], mixed(_SKY, _GRASS, 0.25 + 0.75 * part)
-        )
+        strip = [[-9, row], [9, row], [9, 9], [-9, 9]]
+        panel.polygons([strip], mixed(_SKY, _GRASS, 0.25 + 0.75 * part))
     panel.line([[-9, 0], [9, 0]], MUTED, 0.9, dash=6)
     for (x, away), pale, side in ((_FAR, 0.6, 1), ((0, z), 0, -1)):
         at, v = f * x / away, f * _FOOT / away

@@ -5,7 +5,7 @@ import numpy as np
 from cvnotes.base import Array
 from cvnotes.camera import Camera, Lens, intrinsics
 from cvnotes.show.explorations.lens import bent_room
-from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
+from cvnotes.show.explorations.model import Drawing, Model, Setting, Values, placed
 from cvnotes.show.explorations.paper import Panel, Paper
 from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED
 
@@ -29,10 +29,8 @@ def six_model() -> Model:
         Setting("v0", "v₀ (px)", 188, 288, 1, 238, "the principal point, from above"),
         Setting("k1", "k₁", -0.4, 0.3, 0.01, -0.25, "how the lens bends"),
     )
-    about = (
-        "The photograph of a room, and over it a net of squares of 20 cm, 1 m away: grey without "
-        "the lens, blue with it. One square is orange, a cross marks the principal point."
-    )
+    about = """The photograph of a room, and over it a net of squares of 20 cm, 1 m away: grey
+    without the lens, blue with it. One square is orange, a cross marks the principal point."""
 
     def draw(paper: Paper, values: Values) -> Drawing:
         bare, camera = cameras(values)
@@ -56,8 +54,7 @@ def six_model() -> Model:
         return Drawing(paper.join((panel,)), _sentence(values, camera, crossing, bent))
 
     def enlarged(values: Values, at: Array) -> Values:
-        u, v = (at - [values["u0"], values["v0"]]) / _TOP[:2]
-        return {"alpha_u": float(u), "alpha_v": float(v)}
+        return placed("alpha_u", "alpha_v")(values, (at - [values["u0"], values["v0"]]) / _TOP[:2])
 
     def bending(values: Values, at: Array) -> Values:
         """Choose the k1 that shows the crossing where the hand is, along its ray."""
@@ -65,11 +62,7 @@ def six_model() -> Model:
         r2 = float(_CORNER @ _CORNER)
         return {"k1": (float(bare.ideal(at) @ _CORNER) / r2 - 1 - _K2 * r2**2) / r2}
 
-    drags = {
-        "square": enlarged,
-        "cross": lambda _, at: {"u0": float(at[0]), "v0": float(at[1])},
-        "net": bending,
-    }
+    drags = {"square": enlarged, "cross": placed("u0", "v0"), "net": bending}
     return Model("six", about, settings, draw, drags)
 
 
@@ -97,8 +90,6 @@ def _sentence(values: Values, camera: Camera, bare: Array, bent: Array) -> str:
     middle = camera.A[:2, 2]
     far, seen = (float(np.linalg.norm(at - middle)) for at in (bare, bent))
     bends = f"{abs(far - seen):.0f} px {'inwards' if seen < far else 'outwards'}"
-    return (
-        f"Focal lengths {values['alpha_u']:.0f} and {values['alpha_v']:.0f} px, principal point "
-        f"({values['u0']:.0f}, {values['v0']:.0f}) px, k₁ = {values['k1']:g} and k₂ = {_K2:.2f}: "
-        f"the lens moves the blue crossing {bends}."
-    )
+    return f"""Focal lengths {values["alpha_u"]:.0f} and {values["alpha_v"]:.0f} px, principal point
+    ({values["u0"]:.0f}, {values["v0"]:.0f}) px, k₁ = {values["k1"]:g} and k₂ = {_K2:.2f}: the lens
+    moves the blue crossing {bends}."""

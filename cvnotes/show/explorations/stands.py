@@ -11,7 +11,7 @@ from cvnotes.camera import Camera, move, rotation_from_vector
 from cvnotes.pictures import course, hold_at, render_scene, room_with
 from cvnotes.show.explorations.boards import draw_net
 from cvnotes.show.explorations.finding import rms
-from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
+from cvnotes.show.explorations.model import Drawing, Model, Setting, Values, placed
 from cvnotes.show.explorations.paper import Drawn, Panel, Paper
 from cvnotes.show.style import CAMERA, ESTIMATED, LENS, MUTED
 
@@ -38,11 +38,9 @@ class Best(NamedTuple):
 def stands_model() -> Model:
     """Make the model of two photographs of a board, and the best pose of it for a focal length."""
     settings = (Setting("alpha", "α (px)", _LOW, _HIGH, _STEP, _LOW, "the focal length"),)
-    about = (
-        "Two photographs of a board, one facing the camera and one tilted; over each an orange "
-        "net, the best that a camera with this focal length can do. Below, where the boards would "
-        "be, from above; beside it how far the nets miss the corners, up to this focal length."
-    )
+    about = """Two photographs of a board, one facing the camera and one tilted; over each an orange
+    net, the best that a camera with this focal length can do. Below, where the boards would be,
+    from above; beside it how far the nets miss the corners, up to this focal length."""
 
     def draw(paper: Paper, values: Values) -> Drawing:
         alpha = values["alpha"]
@@ -50,10 +48,7 @@ def stands_model() -> Model:
         drawn = paper.join(photos, (_plan(paper, alpha), _graph(paper, alpha)))
         return Drawing(drawn, _sentence(alpha))
 
-    drags = {
-        "plane": lambda _, at: {"alpha": float(at[0]) / _MM},
-        "alpha": lambda _, at: {"alpha": float(at[0])},
-    }
+    drags = {"plane": lambda _, at: {"alpha": float(at[0]) / _MM}, "alpha": placed("alpha")}
     return Model("stands", about, settings, draw, drags)
 
 
@@ -88,7 +83,7 @@ def best(how: str, alpha: float) -> Best:
 
 def _photo(paper: Paper, how: str, found: Best) -> Panel:
     title = f"{how}: the best net misses by {found.miss:.1f} px"
-    panel = paper.panel(_PANEL, (-0.5, _SIZE[0] - 0.5), (_CUT - 0.5, _SIZE[1] - _CUT - 0.5), title)
+    panel = paper.picture_panel(_PANEL, (_SIZE[0], _SIZE[1] - 2 * _CUT), title, (0, _CUT))
     panel.image(photograph(how))
     draw_net(panel, found.net, _BOARD, ESTIMATED, 1.2)
     if how == "tilted":  # a wrong focal length makes its two sides too alike, or not enough
@@ -109,9 +104,8 @@ def _sides(panel: Panel, net: Array) -> None:
 
 def _plan(paper: Paper, alpha: float) -> Panel:
     """Draw both cameras, the planes of their pictures, and the boards that show this there."""
-    panel = paper.panel(
-        _PANEL, (-40, 776), (-255, 255), "from above, with the depth of each board's middle"
-    )
+    title = "from above, with the depth of each board's middle"
+    panel = paper.panel(_PANEL, (-40, 776), (-255, 255), title)
     z, half = _MM * alpha, _MM * _SIZE[0] / 2
     middle = 16  # mm, between both cameras
     panel.line([[z, middle - half], [z, middle + half]], CAMERA, 1, dash=3)
@@ -149,10 +143,8 @@ def _graph(paper: Paper, alpha: float) -> Panel:
 
 def _sentence(alpha: float) -> str:
     facing, tilted = (best(how, alpha) for how in _WAYS)
-    said = (
-        f"With α = {alpha:.0f} px the facing board would be {facing.away:.0f} mm away, and its net "
-        f"misses by {facing.miss:.1f} px. The tilted board "
-    )
+    said = f"""With α = {alpha:.0f} px the facing board would be {facing.away:.0f} mm away, and its
+    net misses by {facing.miss:.1f} px. The tilted board """
     if tilted.miss < 0.05:
         return f"{said}would be {tilted.away:.0f} mm away, and its net fits, too."
     return f"{said}fits nowhere: at its best its net misses by {tilted.miss:.1f} px."

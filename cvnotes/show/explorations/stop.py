@@ -7,9 +7,8 @@ import numpy as np
 from cvnotes.base import Array
 from cvnotes.camera import Lens
 from cvnotes.show.explorations.lens import bent_room
-from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
-from cvnotes.show.explorations.paper import Panel, Paper
-from cvnotes.show.explorations.strokes import circle
+from cvnotes.show.explorations.model import Drawing, Model, Setting, Values, placed
+from cvnotes.show.explorations.paper import Panel, Paper, circle
 from cvnotes.show.style import CAMERA, ESTIMATED, IDEAL, LENS
 
 # One lens of glass, the same on both sides, in mm; its middle is at 0.
@@ -35,13 +34,11 @@ def stop_model() -> Model:
     settings = (
         Setting("stop", "the stop (mm)", -15, 15, 1, -15, "negative: before the lens's middle"),
     )
-    about = (
-        "A lens, cut in two, with a stop and the sensor: rays through the middle of the stop, bent "
-        "by the glass, in blue, and dashed where an ideal lens would send them. Beside it the "
-        "picture of a room that arises so, and below it, over the ideal radius r, L: the observed "
-        "radius of each ray divided by the ideal one."
-    )
-    return Model("stop", about, settings, _draw, {"stop": lambda _, at: {"stop": float(at[0])}})
+    about = """A lens, cut in two, with a stop and the sensor: rays through the middle of the stop,
+    bent by the glass, in blue, and dashed where an ideal lens would send them. Beside it the
+    picture of a room that arises so, and below it, over the ideal radius r, L: the observed radius
+    of each ray divided by the ideal one."""
+    return Model("stop", about, settings, _draw, {"stop": placed("stop")})
 
 
 def trace(stop: float, slopes: Array) -> tuple[Array, Array]:
@@ -193,8 +190,6 @@ def _sentence(stop: float, seen: float) -> str:
     k1 = _k1(stop)
     place = f"{abs(stop):.0f} mm {'before' if stop < 0 else 'behind'} the middle of the lens"
     shape = "barrel" if k1 < -0.02 else "pincushion" if k1 > 0.02 else "nearly straight"
-    return (
-        f"The stop is {place if stop else 'in the middle of the lens'}. An ideal lens would show "
-        f"the outermost ray {FOCAL * _DRAWN[-1]:.1f} mm from the axis, this one shows it at "
-        f"{FOCAL * seen:.1f} mm: {shape}, k₁ = {round(k1, 2) + 0.0:.2f}."
-    ).replace("-", "−")
+    return f"""The stop is {place if stop else "in the middle of the lens"}. An ideal lens would
+    show the outermost ray {FOCAL * _DRAWN[-1]:.1f} mm from the axis, this one shows it at
+    {FOCAL * seen:.1f} mm: {shape}, k₁ = {round(k1, 2) + 0.0:.2f}."""

@@ -28,12 +28,9 @@ def straighten_model() -> Model:
     G = hold_at(board, camera, rotation_from_vector([0.2, 0.15, 0.0]), aim=[320, 235], farther=1.12)
     corners = (camera.moved(G).project(board.points) - _MIDDLE) / _ALPHA
     rows = corners.reshape(*board.corners[::-1], 2)
-    row = rows[0]
     settings = (Setting("k1", "k₁", _LOWEST, _HIGHEST, _STEP, 0, "how much bending is removed"),)
-    about = (
-        "The photograph of a chessboard in a room, with as much bending removed as k₁ says; "
-        "beside it the uppermost row of corners, and how far it is from a straight line."
-    )
+    about = """The photograph of a chessboard in a room, with as much bending removed as k₁ says;
+    beside it the uppermost row of corners, and how far it is from a straight line."""
 
     @lru_cache(maxsize=1)
     def photograph() -> Drawn:
@@ -43,7 +40,7 @@ def straighten_model() -> Model:
 
     def draw(paper: Paper, values: Values) -> Drawing:
         lens = Lens(k=(values["k1"],))
-        bow = _bow(lens, row)
+        bow = _bow(lens, rows[0])
         panel = paper.picture_panel(_PICTURE, _SIZE, f"the photograph, {_taken(lens)} removed")
         panel.image(_without(lens, photograph(), paper.sharpness))
         net = _ALPHA * lens.undistort(rows) + _MIDDLE
@@ -55,7 +52,7 @@ def straighten_model() -> Model:
 
     def pulled(_: Values, at: Array) -> Values:
         tried = np.arange(_LOWEST, _HIGHEST + _STEP, _STEP)
-        middle = [_bow(Lens(k=(k1,)), row)[len(row) // 2] for k1 in tried]
+        middle = [_bow(Lens(k=(k1,)), rows[0])[len(rows[0]) // 2] for k1 in tried]
         return {"k1": float(tried[np.abs(np.array(middle) - at[1]).argmin()])}
 
     return Model("straighten", about, settings, draw, {"row": pulled})
@@ -95,7 +92,7 @@ def _row_panel(paper: Paper, m: Array, bow: Array) -> Panel:
 
 def _taken(lens: Lens) -> str:
     k1 = lens.k[0]
-    return f"the bending of k₁ = {k1:.3f}".replace("-", "−") if k1 else "no bending"
+    return f"the bending of k₁ = {k1:.3f}" if k1 else "no bending"
 
 
 def _sentence(lens: Lens, bow: Array) -> str:

@@ -1,14 +1,8 @@
-"""Strokes: straight ones cut to a rectangle, and into dashes; and a circle."""
+"""Strokes, cut to a rectangle and into dashes; and polygons, cut by a plane."""
 
 import numpy as np
 
 from cvnotes.base import Array, clipped_segments
-
-
-def circle(n: int) -> Array:
-    """Return n points (n, 2) once round the unit circle, the last upon the first."""
-    turn = np.linspace(0, 2 * np.pi, n)
-    return np.stack([np.cos(turn), np.sin(turn)], axis=-1)
 
 
 def clipped(a: Array, b: Array, limits: tuple[Array, Array]) -> Array:

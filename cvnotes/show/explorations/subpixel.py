@@ -8,8 +8,7 @@ import numpy as np
 from cvnotes.base import Array, Image
 from cvnotes.pictures import course
 from cvnotes.show.explorations.model import Drag, Drawing, Model, Setting, Values
-from cvnotes.show.explorations.paper import Panel, Paper
-from cvnotes.show.explorations.strokes import circle
+from cvnotes.show.explorations.paper import Panel, Paper, circle
 from cvnotes.show.style import ESTIMATED, IDEAL, LENS, mixed
 from cvnotes.targets import refine_edges, refine_subpixel
 
@@ -35,11 +34,9 @@ def subpixel_model() -> Model:
         Setting("finders", "show the finders", 0, 1, 1, 0, "how far off they and you are"),
         Setting("corner", "corner", 0, 53, 1, 22, "of the 54 corners of the board"),
     )  # fmt: skip
-    about = (
-        "Seventeen by seventeen pixels around a corner of a chessboard, with a line to be pulled "
-        "along each of its two edges; beside it, for each edge, its pixels as dots: the grey value "
-        "over the distance from the line, and the curve of a blurred edge."
-    )
+    about = """Seventeen by seventeen pixels around a corner of a chessboard, with a line to be
+    pulled along each of its two edges; beside it, for each edge, its pixels as dots: the grey value
+    over the distance from the line, and the curve of a blurred edge."""
     drags = {held: _pull(name, axis) for held, (name, axis, *_) in _HANDLES.items()}
     return Model("subpixel", about, settings, _draw, drags)
 
@@ -107,21 +104,18 @@ def blurred(t: Array) -> Array:
 
 def _draw(paper: Paper, values: Values) -> Drawing:
     corner, both = round(values["corner"]), lines(values)
-    half = _WINDOW + 0.5
-    panel = paper.panel(_SIZE, (-half, half), (-half, half), "two edges: pull a line onto each")
+    n, title = 2 * _WINDOW + 1, "two edges: pull a line onto each"
+    panel = paper.picture_panel(_SIZE, (n, n), title, (-_WINDOW, -_WINDOW))
     panel.image(neighbourhood(corner).astype(np.uint8), smooth=False)
     for line, ink in zip(both, (ESTIMATED, LENS), strict=True):
-        for colour, width in (("#FFFFFF", 4), (ink, 2.2)):
-            panel.line(line + np.outer([-0.2, 0.2], line[1] - line[0]), colour, width)
+        panel.line(line + np.outer([-0.2, 0.2], line[1] - line[0]), ink, 2.2, rim=1.8)
     if values["finders"]:
         panel.mark(place_of(corner), "ideal", 9)
     for held, end in zip(_HANDLES, both.reshape(4, 2), strict=True):
         panel.grip(held, f"the {held} of a line", end, 1)
     pixels = dots(corner, both)
-    profiles = [
-        _profile(paper, *each)
-        for each in zip(pixels, ("upright", "level"), (ESTIMATED, LENS), strict=True)
-    ]
+    edges = zip(pixels, ("upright", "level"), (ESTIMATED, LENS), strict=True)
+    profiles = [_profile(paper, *edge) for edge in edges]
     miss = [_CONTRAST * np.sqrt(np.mean((y - blurred(t)) ** 2)) for t, y in (x.T for x in pixels)]
     said = f"The dots miss their curves by {miss[0]:.1f} and {miss[1]:.1f} grey levels. "
     off = np.array([crossing(both), *found()[:, corner]]) - place_of(corner)

@@ -10,8 +10,7 @@ from cvnotes.homography import dlt, refine_homography
 from cvnotes.pictures import course
 from cvnotes.projective import apply
 from cvnotes.show.explorations.model import Drag, Drawing, Model, Setting, Values
-from cvnotes.show.explorations.paper import Drawn, Paper
-from cvnotes.show.explorations.strokes import circle
+from cvnotes.show.explorations.paper import Drawn, Paper, circle
 from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED
 
 _SHOWN = (115.0, 1495.0), (525.0, 1200.0)  # px, u and v: below, the sensor ends
@@ -30,11 +29,9 @@ def swing_model() -> Model:
         Setting("du", "pulled to the right (px)", -_FAR, _FAR, 1, 0, "in the picture"),
         Setting("dv", "pulled down (px)", -_FAR, _DOWN, 1, 20, "in the picture"),
     )
-    about = (
-        "A tiled floor with six rows of dots, one of which is pulled away, and arrows that show "
-        "how row 1 gives way: of the DLT, and of the homography with the least error in pixels. "
-        "Beside each row its weight in the DLT."
-    )
+    about = """A tiled floor with six rows of dots, one of which is pulled away, and arrows that
+    show how row 1 gives way: of the DLT, and of the homography with the least error in pixels.
+    Beside each row its weight in the DLT."""
 
     def pulled(row: int) -> Drag:
         def drag(values: Values, at: Array) -> Values:
@@ -101,12 +98,10 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     if np.linalg.norm(held[5] - held[4]) < 26 * panel.pixel:  # both would touch
         del grips[6 if row == 5 else 5]
     others = np.array([at for i, at in grips.items() if i != row])
-    for at, size, ink in (
-        (dots.reshape(-1, 2), 2.2, IDEAL),
-        (np.array([*grips.values()]), 5, IDEAL),
-        (others, 3, "white"),
-    ):
-        panel.polygons(at[:, None] + size * panel.pixel * circle(17), ink)
+    pulls = np.array([*grips.values()])
+    sizes = (dots.reshape(-1, 2), 2.2, IDEAL), (pulls, 5, IDEAL), (others, 3, "white")
+    for at, radius, ink in sizes:
+        panel.polygons(at[:, None] + radius * panel.pixel * circle(17), ink)
     moved = [(net - dots)[0] for net in nets(row, column, values["du"], values["dv"])]
     for by, colour in zip(moved, _INKS, strict=True):
         panel.arrows(dots[0], _TIMES * by, colour, 2.4)
@@ -131,10 +126,8 @@ def _draw(paper: Paper, values: Values) -> Drawing:
 def _ground(size: tuple[int, int], sharpness: int) -> Drawn:
     """Paint tiles of 100 mm × 150 mm, 300 mm below the camera, paler towards the horizon."""
     (alpha_u, _, u0), (_, alpha_v, v0), _ = floor_A()
-    u, v = (
-        np.linspace(*ends, 3 * sharpness * n, endpoint=False)
-        for ends, n in zip(_SHOWN, size, strict=True)
-    )
+    sides = zip(_SHOWN, size, strict=True)
+    u, v = (np.linspace(*ends, 3 * sharpness * n, endpoint=False) for ends, n in sides)
     far = alpha_v * 300 / (v - v0).clip(1e-3)  # mm
     odd = (np.floor((u - u0) / alpha_u * far[:, None] / 100) + np.floor(far / 150)[:, None]) % 2
     grey = odd.reshape(len(v) // 3, 3, len(u) // 3, 3).mean(axis=(1, 3))
@@ -148,7 +141,5 @@ def _sentence(values: Values, moved: list[float]) -> str:
     far = np.hypot(values["du"], values["dv"])
     if far == 0:
         return "No dot is pulled: row 1 stays where it is."
-    return (
-        f"Dot of row {values['row']:.0f} pulled by {far:.0f} px: row 1 moves by up to "
-        f"{moved[0]:.1f} px (DLT), {moved[1]:.1f} px (refined)."
-    )
+    return f"""Dot of row {values["row"]:.0f} pulled by {far:.0f} px: row 1 moves by up to
+    {moved[0]:.1f} px (DLT), {moved[1]:.1f} px (refined)."""

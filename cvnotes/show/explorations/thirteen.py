@@ -7,8 +7,8 @@ import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.pictures import course
-from cvnotes.show.explorations.boards import PAPER, SQUARES
-from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
+from cvnotes.show.explorations.boards import PAPER, SQUARES, squares_between
+from cvnotes.show.explorations.model import Drawing, Model, Setting, Values, nearest
 from cvnotes.show.explorations.paper import Panel, Paper
 from cvnotes.show.style import CAMERA, ESTIMATED, FAINT, IDEAL, MUTED, WORLD
 from cvnotes.stereo import calibrate_stereo, triangulate
@@ -37,21 +37,20 @@ class Measured(NamedTuple):
 def thirteen_model() -> Model:
     """Make the model of the thirteen pairs of real photographs."""
     settings = (Setting("pair", "pair", 1, _COUNT, 1, 7, "which of the thirteen is measured"),)
-    about = (
-        "The corners of a board in two photographs taken at once; the board in the air from above, "
-        "with rays from both cameras; its depths' scatter against what was promised, among "
-        "thirteen such; and the lengths of its six rows."
-    )
-
-    def nearest(_: Values, at: Array) -> Values:
-        dots = np.array([[one.promised, one.scatter] for one in all_measured()])
-        return {"pair": int(np.linalg.norm(dots - at, axis=1).argmin()) + 1}
+    about = """The corners of a board in two photographs taken at once; the board in the air from
+    above, with rays from both cameras; its depths' scatter against what was promised, among
+    thirteen such; and the lengths of its six rows."""
 
     drags = {
-        "number": lambda _, at: {"pair": 1 + (float(at[0]) - _NUMBERS[0]) / _NUMBERS[1]},
-        "dot": nearest,
+        "number": lambda _, at: {"pair": 1 + (at[0] - _NUMBERS[0]) / _NUMBERS[1]},
+        "dot": nearest("pair", np.arange(1, _COUNT + 1), lambda *_: _all_dots()),
     }
     return Model("thirteen", about, settings, _draw, drags)
+
+
+def _all_dots() -> Array:
+    """Return what was promised for each pair, and its scatter (13, 2)."""
+    return np.array([[one.promised, one.scatter] for one in all_measured()])
 
 
 @lru_cache(maxsize=1)
@@ -62,9 +61,8 @@ def all_measured() -> list[Measured]:
 
 def _measured(i: int) -> Measured:
     real, rest = course.real_corners(), np.arange(_COUNT) != i
-    rig = calibrate_stereo(
-        real.board.points, real.left[rest], real.right[rest], real.size, lens="k1 k2 p1 p2"
-    )
+    pair = real.left[rest], real.right[rest]
+    rig = calibrate_stereo(real.board.points, *pair, real.size, lens="k1 k2 p1 p2")
     W = triangulate(rig.cameras, [real.left[i], real.right[i]])
     missed = real.left[i] - rig.left.project(W) - (real.right[i] - rig.right.project(W))
     apart = float(np.std(missed[:, 1]))
@@ -88,12 +86,10 @@ def _draw(paper: Paper, values: Values) -> Drawing:
         photos.append(_photo(paper, f"pair {i + 1}, the {name} camera", m.reshape(6, 9, 2)))
     page = paper.join((*photos, _plot(paper, i)), (_above(paper, i), _rows(paper, now.board)))
     long = lengths(now.board)
-    sentence = (
-        f"Pair {i + 1}, {now.board[..., 2].mean():.0f} mm away: its rows are {long.min():.1f} to "
-        f"{long.max():.1f} mm long instead of 240, {long.mean():.1f} mm on average. Its depths "
-        f"scatter by {now.scatter:.2f} mm; {now.promised:.2f} mm are promised, for its rows differ "
-        f"by {now.apart:.2f} px."
-    )
+    sentence = f"""Pair {i + 1}, {now.board[..., 2].mean():.0f} mm away: its rows are
+    {long.min():.1f} to {long.max():.1f} mm long instead of 240, {long.mean():.1f} mm on average.
+    Its depths scatter by {now.scatter:.2f} mm; {now.promised:.2f} mm are promised, for its rows
+    differ by {now.apart:.2f} px."""
     return Drawing(page, sentence)
 
 
@@ -104,11 +100,10 @@ def _photo(paper: Paper, title: str, grid: Array) -> Panel:
     for _ in range(2):  # one square more on each side, as the last ones go on, and then the others
         grid = np.concatenate([2 * grid[:1] - grid[1:2], grid, 2 * grid[-1:] - grid[-2:-1]])
         grid = grid.swapaxes(0, 1)
-    squares = np.stack([grid[:-1, :-1], grid[:-1, 1:], grid[1:, 1:], grid[1:, :-1]], axis=2)
-    row, column = np.indices(squares.shape[:2])
+    squares, dark = squares_between(grid)
     outline = np.concatenate([grid[0], grid[1:, -1], grid[-1, -2::-1], grid[-2:0:-1, 0]])
     panel.polygons([outline], PAPER)
-    panel.polygons(squares[(row + column) % 2 == 0], SQUARES)
+    panel.polygons(squares[dark], SQUARES)
     inner = grid[1:-1, 1:-1].reshape(-1, 2)
     panel.mark(inner, "lens", 3)
     panel.mark(grid[1, [1, -2]], "estimated", 7)
@@ -157,10 +152,8 @@ def _plot(paper: Paper, i: int) -> Panel:
     promised = np.linspace(0, _MOST, 40)
     panel.line(np.column_stack([promised, promised]), MUTED, 1)
     panel.line(np.column_stack([promised, np.hypot(promised, _UNEVEN)]), IDEAL, 1, dash=4)
-    for k, one in enumerate(all_measured()):
-        if k != i:
-            panel.mark([one.promised, one.scatter], "lens", 6)
-    now = np.array([all_measured()[i].promised, all_measured()[i].scatter])
+    panel.mark(np.delete(_all_dots(), i, axis=0), "lens", 6)
+    now = _all_dots()[i]
     panel.mark(now, "estimated", 9)
     panel.text(_free(now) + now, f"{i + 1}", ESTIMATED, anchor="mm", size=14)
     panel.grip("dot", "a pair's dot", now, 20)
@@ -171,9 +164,8 @@ def _free(at: Array) -> Array:
     """Return the way (2,), one of sixteen, to a label of the dot `at` that is far from others."""
     turns = np.arange(16) * np.pi / 8
     ways = np.column_stack([0.075 * np.cos(turns), 0.1 * np.sin(turns)])
-    dots = np.array([[one.promised, one.scatter] for one in all_measured()])
     ways = ways[(at + ways < _MOST - 0.02).all(axis=1)]
-    apart = np.linalg.norm(at + ways[:, None] - dots, axis=-1).min(axis=1)
+    apart = np.linalg.norm(at + ways[:, None] - _all_dots(), axis=-1).min(axis=1)
     return np.asarray(ways[apart.argmax()])
 
 

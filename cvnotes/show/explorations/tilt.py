@@ -10,7 +10,7 @@ from cvnotes.calibration import pose_from_view
 from cvnotes.camera import Camera, intrinsics, pose, rotation_from_vector
 from cvnotes.show.explorations.boards import draw_net
 from cvnotes.show.explorations.finding import rms
-from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
+from cvnotes.show.explorations.model import Drawing, Model, Setting, Values, placed
 from cvnotes.show.explorations.paper import Panel, Paper
 from cvnotes.show.style import ESTIMATED, FAINT, IDEAL, LENS, MUTED
 from cvnotes.targets import Chessboard
@@ -76,17 +76,15 @@ def tilt_model(camera: Camera, board: Chessboard) -> Model:
         Setting("tilt", "tilt (°)", 0, _STEEPEST, 1, 30, "turns the board about its x axis"),
         Setting("alpha", "other lens, α (px)", _SHORTEST, _LONGEST, 5, 400, "how long it is"),
     )
-    about = (
-        "One tilted board through two lenses. Before the second it is turned and placed so that "
-        "the pictures are most alike; below, both cameras from the side; beside it how far the "
-        "pictures differ, against the length of the second lens."
-    )
+    about = """One tilted board through two lenses. Before the second it is turned and placed so
+    that the pictures are most alike; below, both cameras from the side; beside it how far the
+    pictures differ, against the length of the second lens."""
 
     def tilted(_: Values, at: Array) -> Values:
         x, y = np.array([_SIDE[0] * camera.size[0], _SIDE[1] * camera.size[1]]) - at
         return {"tilt": float(np.degrees(np.arctan2(x, max(y, 0))))}
 
-    drags = {"board": tilted, "lens": lambda _, at: {"alpha": float(at[0])}}
+    drags = {"board": tilted, "lens": placed("alpha")}
     return Model("tilt", about, settings, partial(_draw, lenses), drags)
 
 
@@ -104,18 +102,15 @@ def _draw(lenses: _Lenses, paper: Paper, values: Values) -> Drawing:
     picture.line([[0, 0.74 * h], [w, 0.74 * h]], FAINT, 0.8)
     _draw_side(picture, lenses, (lenses.alpha, lenses.away, tilt), (alpha, near, turned))
     misfit = lenses.misfit(tilt, alpha)
-    sentence = (
-        f"Tilted by {tilt:.0f}° the pictures of α = {lenses.alpha:.0f} and {alpha:.0f} px differ "
-        f"by {misfit:.1f} px (RMS of a corner): "
-    )
+    sentence = f"""Tilted by {tilt:.0f}° the pictures of α = {lenses.alpha:.0f} and {alpha:.0f} px
+    differ by {misfit:.1f} px (RMS of a corner): """
     if alpha == lenses.alpha:
         sentence += "it is the same lens."
     elif not tilt:
         sentence += "no picture of this board tells the one lens from the other."
     else:
-        sentence += (
-            f"{misfit / _NOISE:.2g} times what noise of 0.1 px along each axis makes of one."
-        )
+        times = misfit / _NOISE
+        sentence += f"{times:.2g} times what noise of 0.1 px along each axis makes of one."
     return Drawing(paper.join((picture, _draw_valley(lenses, paper, tilt, alpha))), sentence)
 
 
@@ -126,10 +121,8 @@ def _draw_side(
     w, h = lenses.size
     middle, a_mm = np.array([_SIDE[0] * w, _SIDE[1] * h]), _SIDE[2] * w / lenses.away
     half = a_mm * np.ptp(lenses.board.points[:, 1]) / 2
-    for (alpha, away, tilt), colour, dash, name_at in (
-        (far, LENS, 0, 0.8 * h),
-        (near, ESTIMATED, 4, 1.13 * h),
-    ):
+    both = (far, LENS, 0, 0.8 * h), (near, ESTIMATED, 4, 1.13 * h)
+    for (alpha, away, tilt), colour, dash, name_at in both:
         end = half * np.array([np.sin(np.radians(tilt)), np.cos(np.radians(tilt))])
         eye = middle - [a_mm * away, 0]
         picture.line([eye, middle - end, middle + end, eye], colour, 1.2, dash)

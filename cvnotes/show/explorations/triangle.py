@@ -10,7 +10,7 @@ from cvnotes.base import Array
 from cvnotes.camera import Camera, intrinsics, look_at
 from cvnotes.pictures import blocks, render_scene
 from cvnotes.projective import from_homogeneous, to_homogeneous
-from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
+from cvnotes.show.explorations.model import Drawing, Model, Setting, Values, placed
 from cvnotes.show.explorations.paper import Drawn, Panel, Paper
 from cvnotes.show.style import CAMERA, ESTIMATED, FAINT, IDEAL, MUTED
 
@@ -45,11 +45,9 @@ def triangle_model() -> Model:
         Setting("turn", "turn (°)", -90, 90, 1, 60,
                 "from where space is seen: 0 from before the glass, 90 from its side"),
     )  # fmt: skip
-    about = (
-        "The photograph of a box, and far around it the triangle of three vanishing points with "
-        "its altitudes; beside it the photograph in space as a pane of glass, and before it the "
-        "eye, from which three rods at right angles go to the three points."
-    )
+    about = """The photograph of a box, and far around it the triangle of three vanishing points
+    with its altitudes; beside it the photograph in space as a pane of glass, and before it the eye,
+    from which three rods at right angles go to the three points."""
 
     @lru_cache(maxsize=1)
     def photo() -> Bitmap.Image:
@@ -81,14 +79,9 @@ def triangle_model() -> Model:
         _draw_rods(space, turn, v, eye, square, box)
         return Drawing(paper.join((sky, space)), _sentence(v, c, square))
 
-    def turned(_: Values, at: Array) -> Values:
-        return {"turn": float(np.degrees(np.arcsin(np.clip(-at[0] / _RING, -1, 1))))}
-
-    drags = {
-        name: lambda _, at, name=name: {f"{name}_u": float(at[0]), f"{name}_v": float(at[1])}
-        for name in "XYZ"
-    }
-    return Model("triangle", about, settings, draw, {**drags, "turn": turned})
+    drags = {name: placed(f"{name}_u", f"{name}_v") for name in "XYZ"}
+    drags["turn"] = lambda _, at: {"turn": np.degrees(np.arcsin(np.clip(-at[0] / _RING, -1, 1)))}
+    return Model("triangle", about, settings, draw, drags)
 
 
 def camera_of(v: Array) -> tuple[Array, float]:
@@ -137,9 +130,8 @@ def _draw_box(panel: Panel, v: Array, c: Array, square: float, nearest: Array, e
         names += [("c", c, ESTIMATED), ("H", H, MUTED)]
     e, n = to_homogeneous(ends), to_homogeneous(v)
     # Between the ends of two edges lies the corner in which the edges parallel to them meet.
-    far = from_homogeneous(
-        np.cross(np.cross(e, np.roll(n, -1, axis=0)), np.cross(np.roll(e, -1, axis=0), n))
-    )
+    along = np.cross(e, np.roll(n, -1, axis=0)), np.cross(np.roll(e, -1, axis=0), n)
+    far = from_homogeneous(np.cross(*along))
     for k, name in enumerate("XYZ"):
         for begin, end in ((nearest, ends[k]), (ends[k - 2], far[k]), (ends[k - 1], far[k - 1])):
             panel.line([begin, end], look[0], 1.5, look[1])
@@ -200,8 +192,7 @@ def _draw_glass(panel: Panel, turn: float, v: Array, photo: Bitmap.Image, box: A
     panel.line(on_sheet(np.insert(sides, 1, _LOW, axis=1), 0), FAINT, 1.2)
     t = np.radians(turn)
     at = on_sheet(_MIDDLE * [1, 0, 1] + [-_RING * np.sin(t), _LOW, _RING * np.cos(t)], 0)
-    panel.mark(at, "ideal", 8)
-    panel.grip("turn", "the ring that turns the view", at, 4)
+    panel.grip("turn", "the ring that turns the view", at, 4, "ideal", 8)
 
 
 def _draw_rods(panel: Panel, turn: float, v: Array, eye: Array, square: float, box: Array) -> None:
@@ -214,9 +205,8 @@ def _draw_rods(panel: Panel, turn: float, v: Array, eye: Array, square: float, b
     names = [(name, at, ESTIMATED) for name, at in zip("XYZ", m, strict=True)]
     sides, rods = np.stack([m, np.roll(m, 1, axis=0)], axis=1), np.stack([m, 0 * m + top], axis=1)
     lines = [*sides, *rods] if square > 0 else [*sides]
-    lines += [
-        face[[i, j]] for face in box for i, j in ((0, 1), (1, 2), (2, 3), (3, 0), (0, 2), (1, 3))
-    ]
+    ends = (0, 1), (1, 2), (2, 3), (3, 0), (0, 2), (1, 3)
+    lines += [face[[*pair]] for face in box for pair in ends]
     panel.segments(sides, ESTIMATED, 1.5)
     from_aside = abs(turn) > _ASIDE  # from where the half circle is seen well
     if np.isfinite(square) and from_aside:

@@ -10,10 +10,9 @@ from cvnotes.camera import Camera, intrinsics, inverse, look_at, move
 from cvnotes.pictures import course
 from cvnotes.show.explorations.boards import around, draw_board, draw_sheet, paper_and_squares
 from cvnotes.show.explorations.fold import circle_of
-from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
-from cvnotes.show.explorations.paper import Panel, Paper
-from cvnotes.show.explorations.strokes import circle
-from cvnotes.show.space.directions import sheet
+from cvnotes.show.explorations.model import Drawing, Model, Setting, Values, nearest
+from cvnotes.show.explorations.paper import Panel, Paper, circle
+from cvnotes.show.space.directions import onto, sheet
 from cvnotes.show.style import CAMERA, ESTIMATED
 
 _SPACE, _PICTURE = (440, 300), (400, 300)  # px
@@ -26,12 +25,7 @@ _HIGHEST = 100  # mm
 _INK, _WAY = "#262629", "#F0C4A4"
 _BLUE = ("#8DBFE8", "#C4E0F6")  # of a box's sides and top
 _LID = [4, 5, 6, 7]  # of the box's corners
-_VIEW = sheet((50, -85))
-
-
-def on_sheet(W: Array) -> Array:
-    """Project points (..., 3) onto the sheet (..., 2), all parallel."""
-    return np.asarray(W @ _VIEW.T)
+on_sheet = onto(sheet((50, -85)))
 
 
 def twins_model() -> Model:
@@ -42,21 +36,13 @@ def twins_model() -> Model:
         Setting("height", "a box on the board (mm)", 0, _HIGHEST, 5, 80,
                 "how far it stands out of the plane"),
     )  # fmt: skip
-    about = (
-        "A board and two cameras in space, with the way on which the other one can be pulled; a "
-        "dot in each is its principal point; and their two pictures, laid over each other, of the "
-        "board and of a box upon it, one in each camera's colour."
-    )
+    about = """A board and two cameras in space, with the way on which the other one can be pulled;
+    a dot in each is its principal point; and their two pictures, laid over each other, of the board
+    and of a box upon it, one in each camera's colour."""
 
-    def carry(_: Values, at: Array) -> Values:
-        nearest = np.linalg.norm(on_sheet(_way()) - at, axis=1).argmin()
-        return {"alpha": _LOW + _STEP * float(nearest)}
-
-    def lift(_: Values, at: Array) -> Values:
-        heights = np.arange(0, _HIGHEST + 1, 5.0)
-        tops = np.array([_top(height) for height in heights])
-        return {"height": float(heights[np.linalg.norm(tops - at, axis=1).argmin()])}
-
+    alphas, heights = np.arange(_LOW, _HIGH + 1, _STEP), np.arange(0, _HIGHEST + 1, 5.0)
+    carry = nearest("alpha", alphas, lambda *_: on_sheet(_way()))
+    lift = nearest("height", heights, lambda _, tried: np.array([*map(_top, tried)]))
     return Model("twins", about, settings, _draw, {"other": carry, "box": lift})
 
 
@@ -189,10 +175,8 @@ def _sentence(cameras: tuple[Camera, Camera], W: Array, height: float) -> str:
     first, second = cameras
     apart = float(np.linalg.norm(first.centre - second.centre))
     alpha, u0, v0 = second.A[[0, 0, 1], [0, 2, 2]]
-    said = (
-        f"The orange camera, α = {alpha:.0f} px and principal point ({u0:.0f}, {v0:.0f}), stands "
-        f"{apart:.0f} mm from the blue one"
-    )
+    said = f"""The orange camera, α = {alpha:.0f} px and principal point ({u0:.0f}, {v0:.0f}),
+    stands {apart:.0f} mm from the blue one"""
     if not height:
         return f"{said}. No box stands on the board."
     off = np.linalg.norm(first.project(W[4:]) - second.project(W[4:]), axis=1).max()

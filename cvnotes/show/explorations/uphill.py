@@ -7,7 +7,7 @@ import numpy as np
 
 from cvnotes.camera import Lens
 from cvnotes.show.explorations.lens import bent_room, draw_fold, seen_radius
-from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
+from cvnotes.show.explorations.model import Drawing, Model, Setting, Values, placed
 from cvnotes.show.explorations.paper import Panel, Paper
 from cvnotes.show.style import ESTIMATED, IDEAL, LENS, MUTED
 
@@ -20,14 +20,9 @@ _HIGH, _END, _F = 0.66, 1.12, 800  # of the rooms, half as high; of the curve; p
 def uphill_model() -> Model:
     """Make the model of a point that a lens shows, and of two ways to where it came from."""
     settings = (Setting("seen", "r′", 0.5, 0.65, 0.0002, 0.6056, "where the lens shows the point"),)
-    about = (
-        "A room through a lens with a point at r′; below, without the lens, guesses where it is. "
-        "Beside it r L(r) over r: Newton climbs along tangents to r′, dividing along lines from 0."
-    )
-    drags = {
-        "point": lambda _, at: {"seen": float(np.hypot(*at))},
-        "height": lambda _, at: {"seen": float(at[1])},
-    }
+    about = """A room through a lens with a point at r′; below, without the lens, guesses where it
+    is. Beside it r L(r) over r: Newton climbs along tangents to r′, dividing along lines from 0."""
+    drags = {"point": lambda _, at: {"seen": float(np.hypot(*at))}, "height": placed("", "seen")}
     return Model("uphill", about, settings, _draw, drags)
 
 
@@ -60,8 +55,7 @@ def _draw(paper: Paper, values: Values) -> Drawing:
         room.image(bent_room(lens, room.x, room.y, _ROOM, paper.sharpness, 1))
     draw_fold(through, _LENS)
     through.line([[0.0, 0.0], [seen, 0.0]], LENS, 2)
-    through.mark([seen, 0], "lens", 9)
-    through.grip("point", "the point that the lens shows", [seen, 0], 1)
+    through.grip("point", "the point that the lens shows", [seen, 0], 1, "lens", 9)
     without.line([[0.0, 0.0], [wide, 0.0]], IDEAL, 1, dash=4)
     without.mark([[r, 0] for r in newton if r > 0], "estimated", 7)
     without.mark([ideal, 0], "ideal", 10)
@@ -104,11 +98,7 @@ def _sentence(seen: float, ideal: float) -> str:
     said = f"Seen at r′ = {seen:.4f}"
     if np.isnan(ideal):
         return f"{said}, above the top of the curve: no ideal point is seen there, and both fail."
-    newton, divided = (
-        next(n for n, r in enumerate(_guesses(step, seen, 500)) if _F * abs(r - ideal) < 0.1)
-        for step in (_newton, _divided)
-    )
-    return (
-        f"{said}: r = {ideal:.3f}. To a tenth of a pixel, with f = {_F} px, Newton's method takes "
-        f"{newton} rounds, dividing {divided}."
-    )
+    both = (enumerate(_guesses(step, seen, 500)) for step in (_newton, _divided))
+    newton, divided = (next(n for n, r in way if _F * abs(r - ideal) < 0.1) for way in both)
+    return f"""{said}: r = {ideal:.3f}. To a tenth of a pixel, with f = {_F} px, Newton's method
+    takes {newton} rounds, dividing {divided}."""

@@ -7,9 +7,8 @@ import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.pictures import course
-from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
-from cvnotes.show.explorations.paper import Drawn, Panel, Paper
-from cvnotes.show.explorations.strokes import circle
+from cvnotes.show.explorations.model import Drawing, Model, Setting, Values, placed
+from cvnotes.show.explorations.paper import Drawn, Panel, Paper, circle
 from cvnotes.show.style import ESTIMATED, IDEAL, LENS, WORLD, mixed
 
 _HALF = 3  # px from the window's middle to its border: 7 × 7 pixels vote
@@ -67,11 +66,9 @@ def votes_model() -> Model:
         Setting("m_u", "m, aside (px)", -_HALF, _HALF, 0.05, -1.5, "to the right of the middle"),
         Setting("m_v", "m, down (px)", -_HALF, _HALF, 0.05, 1.5, "below the window's middle"),
     )
-    about = (
-        "A part of a photograph of the board with a window of 7 × 7 pixels; and the lines along "
-        "which its pixels see an edge, upright ones orange, level ones blue, weak ones grey, with "
-        "a guess and how far each line passes it by."
-    )
+    about = """A part of a photograph of the board with a window of 7 × 7 pixels; and the lines
+    along which its pixels see an edge, upright ones orange, level ones blue, weak ones grey, with a
+    guess and how far each line passes it by."""
 
     def draw(paper: Paper, values: Values) -> Drawing:
         at = round(values["u"]), round(values["v"])
@@ -83,23 +80,18 @@ def votes_model() -> Model:
         drawn = paper.join((_photo(paper, photo, at), votes))
         return Drawing(drawn, _sentence(at, window, m))
 
-    drags = {
-        "window": lambda _, at: {"u": float(at[0]), "v": float(at[1])},
-        "m": lambda values, at: {
-            "m_u": float(at[0] - values["u"]),
-            "m_v": float(at[1] - values["v"]),
-        },
-    }
-    return Model("votes", about, settings, draw, drags)
+    def pulled(values: Values, at: Array) -> Values:
+        return placed("m_u", "m_v", (values["u"], values["v"]))(values, at)
+
+    return Model("votes", about, settings, draw, {"window": placed("u", "v"), "m": pulled})
 
 
 def _photo(paper: Paper, photo: Drawn, at: tuple[int, int]) -> Panel:
-    x, y = (_LEFT - 0.5, _LEFT + _SIDE - 0.5), (_TOP - 0.5, _TOP + _SIDE - 0.5)
-    panel = paper.panel(_PANEL, x, y, "the photograph, and the window")
+    title, part = "the photograph, and the window", (_SIDE, _SIDE)
+    panel = paper.picture_panel(_PANEL, part, title, (_LEFT, _TOP))
     panel.image(photo[_TOP : _TOP + _SIDE, _LEFT : _LEFT + _SIDE])
     corners = [[-1, -1], [1, -1], [1, 1], [-1, 1], [-1, -1]]
-    for colour, width in (("#FFFFFF", 3.5), (ESTIMATED, 1.8)):
-        panel.line(np.add(at, np.multiply(corners, _HALF + 0.5)), colour, width)
+    panel.line(np.add(at, np.multiply(corners, _HALF + 0.5)), ESTIMATED, 1.8, rim=1.7)
     panel.grip("window", "the window, to be moved over the photograph", at, 5)
     return panel
 
@@ -108,10 +100,8 @@ def _votes(
     paper: Paper, photo: Drawn, at: tuple[int, int], window: Window, corners: Array
 ) -> Panel:
     """Draw each pixel's line, the thicker and darker the longer its gradient, weak ones first."""
-    (u, v), half = at, _HALF + 0.5
-    panel = paper.panel(
-        _PANEL, (u - half, u + half), (v - half, v + half), "the votes in it: pull m"
-    )
+    (u, v), n = at, 2 * _HALF + 1
+    panel = paper.picture_panel(_PANEL, (n, n), "the votes in it: pull m", (u - _HALF, v - _HALF))
     part = photo[v - _HALF : v + _HALF + 1, u - _HALF : u + _HALF + 1]
     pale = 255 - 16 * np.rint((271.0 - part) / 64)  # few greys pack small
     panel.image(pale.astype(np.uint8), smooth=False)
@@ -157,10 +147,8 @@ def _draw_misses(panel: Panel, window: Window, m: Array) -> None:
 
 def _sentence(at: tuple[int, int], window: Window, m: Array) -> str:
     small, large = window.eigenvalues
-    said = (
-        f"At ({at[0]}, {at[1]}) the eigenvalues are {small:.0f} and {large:.0f}, "
-        f"R = {window.R / 1e6 + 0.0:.0f} million: "
-    )
+    said = f"""At ({at[0]}, {at[1]}) the eigenvalues are {small:.0f} and {large:.0f}, R =
+    {window.R / 1e6 + 0.0:.0f} million: """
     if large < _NOTHING:
         return f"{said}both are small: flat, nothing changes here."
     if np.isnan(window.crossing).any():

@@ -3,11 +3,14 @@
 import numpy as np
 
 from cvnotes.base import Array
-from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
+from cvnotes.show.explorations.formation import draw_floor, looked_at
+from cvnotes.show.explorations.model import Drawing, Model, Setting, Values, placed
 from cvnotes.show.explorations.paper import Panel, Paper
-from cvnotes.show.style import CAMERA, IDEAL, MUTED, WORLD
+from cvnotes.show.style import CAMERA, IDEAL, WORLD
 
-_BOARD = np.array([[-25.0, 0], [225, 0]])  # mm, X and Z of its ends
+_Motion = tuple[Array, Array]  # R and T, from above
+_EDGES = np.linspace([-25.0, 0], [225, 0], 11)  # mm, X and Z where the board's squares begin
+_SHADOW, _LIGHT, _WEDGE = np.array([70.0, 45]), "#B5AC9A", "#D3E9F7"  # mm, of the board
 _AHEAD, _WIDE = 150, 0.5  # mm, how far the line of sight is drawn; half the width of the view there
 # mm: what is shown to each side, ahead and behind of the board's frame, and of the camera's; both
 # have one scale, in which the two walks are equally long.
@@ -21,19 +24,9 @@ def walks_model() -> Model:
         Setting("Z", "camera's Z (mm)", -500, -200, 10, -400, "negative: before the board"),
         Setting("turn", "turn (°)", -60, 60, 0.1, -20, "of the camera on the spot, to the right"),
     )
-    about = (
-        "A camera before a board, from above, twice: in the board's frame, with the walk from its "
-        "origin to the camera, C; and in the camera's frame, with the walk to the origin, T."
-    )
-
-    def looked(values: Values, at: Array) -> Values:
-        x, z = at - [values["X"], values["Z"]]
-        return {"turn": float(np.degrees(np.arctan2(x, z)))}
-
-    drags = {
-        "camera": lambda _, at: {"X": float(at[0]), "Z": float(at[1])},
-        "line of sight": looked,
-    }
+    about = """A camera before a board, from above, twice: in the board's frame, with the walk from
+    its origin to the camera, C; and in the camera's frame, with the walk to the origin, T."""
+    drags = {"camera": placed("X", "Z"), "line of sight": looked_at}
     return Model("walks", about, settings, _draw, drags)
 
 
@@ -47,58 +40,52 @@ def frames(values: Values) -> tuple[Array, Array, Array]:
 
 def _draw(paper: Paper, values: Values) -> Drawing:
     R, C, T = frames(values)
-    at_0 = np.zeros(2)
-    world = _frame(paper, _WORLD, "board's frame: from origin to camera, C", (_BOARD, at_0), C, R)
+    title = "board's frame: from origin to camera, C"
+    world = _frame(paper, _WORLD, title, (np.eye(2), np.zeros(2)), C, R)
     beside, anchor = (-45, "rm") if C[0] > 0 else (245, "lm")
-    world.text([beside, 0], "board", "#333333", anchor=anchor, size=13)
+    world.text([beside, 0], "board", IDEAL, anchor=anchor, size=13)
     _walk(world, C, WORLD, "XZ")
     sight = C + R.T @ [0, _AHEAD]
     world.mark(sight, "ideal", 6)
     world.grip("camera", "where the camera stands", C, 6)
     world.grip("line of sight", "where the camera looks", sight, 6)
-    seen = _BOARD @ R.T + T, T
-    own = _frame(paper, _OWN, "camera's frame: from camera to origin, T", seen, at_0, np.eye(2))
+    title = "camera's frame: from camera to origin, T"
+    own = _frame(paper, _OWN, title, (R, T), np.zeros(2), np.eye(2))
     _walk(own, T, CAMERA, "xz")
-    return Drawing(
-        paper.join((world, own)),
-        f"C = ({C[0]:.0f}, {C[1]:.0f}) mm along X and Z; T = ({round(T[0])}, {round(T[1])}) mm "
-        f"along the camera's x and z. Both ways are {np.linalg.norm(C):.0f} mm long.",
-    )
+    said = f"""C = ({C[0]:.0f}, {C[1]:.0f}) mm along X and Z; T = ({round(T[0])}, {round(T[1])}) mm
+    along the camera's x and z. Both ways are {np.linalg.norm(C):.0f} mm long."""
+    return Drawing(paper.join((world, own)), said)
 
 
 def _frame(
-    paper: Paper,
-    reach: tuple[int, int, int],
-    title: str,
-    seen: tuple[Array, Array],
-    camera: Array,
-    R: Array,
+    paper: Paper, reach: tuple[int, int, int], title: str, motion: _Motion, camera: Array, R: Array
 ) -> Panel:
-    """Draw the board, its origin and the camera from above, ahead being upwards."""
-    board, origin = seen
+    """Draw floor, board and camera from above, moved into a frame, ahead being upwards."""
+    turn, shift = motion
     aside, ahead, behind = reach
     size = round(2 * aside / _MM), round((ahead - behind) / _MM)
     panel = paper.panel(size, (-aside, aside), (ahead, behind), title)
-    panel.ticks(x=(-400, 0, 400), y=[y for y in (-400, 0, 400) if behind < y < ahead])
-    sides = _AHEAD * np.array([[-_WIDE, 1], [_WIDE, 1]]) @ R + camera
-    panel.polygons([[camera, *sides]], "#DDEFFA")
-    panel.line(np.stack([sides[0], camera, sides[1]]), CAMERA, 1.5)
-    panel.line(board, "#333333", 7)
+    draw_floor(panel, lambda W: W[..., [0, 2]] @ turn.T + shift)
+    edges, back = _EDGES @ turn.T + shift, turn @ _SHADOW
+    panel.polygons([[edges[0], edges[-1], edges[-1] + back, edges[0] + back]], _LIGHT)
+    sides = 10 * _AHEAD * np.array([[-_WIDE, 1], [_WIDE, 1]]) @ R + camera
+    panel.veil([np.stack([camera, *sides])], [_WEDGE])
+    panel.line(edges[[0, -1]], IDEAL, 8)
+    panel.segments(np.stack([edges[:-1:2], edges[1::2]], axis=1), "#FFFFFF", 5)
     panel.line(np.stack([camera, camera + R.T @ [0, _AHEAD]]), IDEAL, 1, dash=4)
     panel.mark(camera, "camera", 9, looks=(R[1, 0], -R[1, 1]))
-    panel.mark(origin, "world", 7)
+    panel.mark(shift, "world", 7)
     return panel
 
 
 def _walk(panel: Panel, to: Array, colour: str, names: str) -> None:
     """Draw the walk from the middle of the frame along its two axes, with its numbers."""
     corner = np.array([to[0], 0.0])
-    panel.line(np.stack([0 * to, corner, to]), colour, 2.5)
-    panel.line(np.stack([0 * to, to]), MUTED, 1, dash=4)
+    panel.arrows(np.stack([0 * to, corner]), np.stack([corner, to - corner]), colour, 3)
+    panel.line(np.stack([0 * to, to]), IDEAL, 1, dash=4)
     aside = np.copysign(95, to[0] * (panel.x[1] - 165 - abs(to[0])))  # within, where the panel ends
     for name, number, at, by in (
         (names[0], to[0], corner / 2, [0, -50 if to[1] > 0 else 50]),
         (names[1], to[1], (corner + to) / 2, [aside, 0]),
     ):
-        words = f"{name} {round(number)}".replace("-", "−")
-        panel.text(at + by, words, colour, anchor="mm", size=14)
+        panel.text(at + by, f"{name} {round(number)}", colour, anchor="mm", size=14)

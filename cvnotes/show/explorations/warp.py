@@ -29,15 +29,12 @@ def warp_model() -> Model:
     settings = (
         Setting("angle", "rotation (°)", -180, 180, 1, 20, "clockwise on the screen: v runs down"),
         Setting("zoom", "zoom", 0.25, _MOST, 0.05, 1.3, "by how much distances grow"),
-        Setting(
-            "count", "count", 0, 1, 1, 1, "how many are holes, and how many were hit more than once"
-        ),
-    )
-    about = (
-        "A small photograph of a room, turned and zoomed twice by the same map: forward, where "
-        "pixels that receive nothing are orange holes, and those hit twice blue, and backward, "
-        "without any."
-    )
+        Setting("count", "count", 0, 1, 1, 1,
+                "how many are holes, and how many were hit more than once"),
+    )  # fmt: skip
+    about = """A small photograph of a room, turned and zoomed twice by the same map: forward, where
+    pixels that receive nothing are orange holes, and those hit twice blue, and backward, without
+    any."""
 
     def pulled(_: Values, at: Array) -> Values:
         x, y = at - _MIDDLE
@@ -55,9 +52,8 @@ def source() -> Drawn:
 
 def _draw(paper: Paper, values: Values) -> Drawing:
     angle, zoom = np.radians(values["angle"]), values["zoom"]
-    forward = forward_warp(
-        source(), compose(zoom_map(zoom, _MIDDLE), rotation_map(angle, _MIDDLE)), fill=_PAPER
-    )
+    turned_and_zoomed = compose(zoom_map(zoom, _MIDDLE), rotation_map(angle, _MIDDLE))
+    forward = forward_warp(source(), turned_and_zoomed, fill=_PAPER)
     where_from = compose(rotation_map(-angle, _MIDDLE), zoom_map(1 / zoom, _MIDDLE))
     backward = backward_warp(source(), where_from, border="replicate")
     covered = backward_warp(np.ones(SIZE[::-1]), where_from, method="nearest") > 0
@@ -82,11 +78,9 @@ def _draw(paper: Paper, values: Values) -> Drawing:
 def _sentence(
     holes: npt.NDArray[np.bool_], covered: npt.NDArray[np.bool_], folds: npt.NDArray[np.bool_]
 ) -> str:
-    return (
-        f"Forward: {holes.sum()} of {covered.sum()} pixels are holes, and {folds.sum()} were hit "
-        f"more than once; {100 * holes.sum() / covered.sum():.0f} % stay empty. "
-        "Backward: each new pixel asks exactly once, no holes, no folds."
-    )
+    return f"""Forward: {holes.sum()} of {covered.sum()} pixels are holes, and {folds.sum()} were
+    hit more than once; {100 * holes.sum() / covered.sum():.0f} % stay empty. Backward: each new
+    pixel asks exactly once, no holes, no folds."""
 
 
 def _coloured(image: Drawn, holes: npt.NDArray[np.bool_], folds: npt.NDArray[np.bool_]) -> Drawn:

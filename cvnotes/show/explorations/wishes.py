@@ -4,7 +4,7 @@ import numpy as np
 
 from cvnotes.base import Array
 from cvnotes.pictures import course
-from cvnotes.show.explorations.model import Drawing, Model, Setting, Values
+from cvnotes.show.explorations.model import Drawing, Model, Setting, Values, placed
 from cvnotes.show.explorations.paper import Panel, Paper
 from cvnotes.show.explorations.votes import slopes
 from cvnotes.show.style import ESTIMATED, IDEAL, LENS, WORLD, mixed
@@ -18,12 +18,10 @@ _PHOTO, _PLANE = (336, 336), (399, 336)  # px
 def wishes_model() -> Model:
     """Make the model of one unknown, two wishes, and the sum of squares that is left."""
     settings = (Setting("m", "m (px)", 2, 4.2, 0.05, 2.4, "where the edge is believed to be"),)
-    about = (
-        "An edge of a photograph with the upright lines of two of its pixels, and a line m. Beside "
-        "it their wishes as one point b, and m on a line, with the square on what is left."
-    )
+    about = """An edge of a photograph with the upright lines of two of its pixels, and a line m.
+    Beside it their wishes as one point b, and m on a line, with the square on what is left."""
     drags = {
-        "m": lambda _, at: {"m": float(at[0])},
+        "m": placed("m"),
         "foot": lambda _, at: {"m": float(at @ column() / (column() @ column()))},
     }
     return Model("wishes", about, settings, _draw, drags)
@@ -39,9 +37,8 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     x, y = b - m * J
     drawn = paper.join((_photo(paper, m), _plane(paper, m * J, b)))
     said = f"m = {m:.2f} leaves {x:.2f} and {y:.2f}: the sum of the squares is {x * x + y * y:.2f}"
-    return Drawing(
-        drawn, f"{said}{', the least of all' if abs(m - J @ b / (J @ J)) < 0.01 else ''}."
-    )
+    least = ", the least of all" if abs(m - J @ b / (J @ J)) < 0.01 else ""
+    return Drawing(drawn, f"{said}{least}.")
 
 
 def _photo(paper: Paper, m: float) -> Panel:
@@ -59,8 +56,7 @@ def _photo(paper: Paper, m: float) -> Panel:
     for u in range(7):
         panel.text([u, 3.2], f"{u}", IDEAL, anchor="mm", size=13)
     panel.text([m - 0.3, 2], "m", WORLD, anchor="rm", size=18)
-    panel.mark([m, 2], "world", 6)
-    panel.grip("m", "the line m", [m, 2], 3)
+    panel.grip("m", "the line m", [m, 2], 3, "world", 6)
     return panel
 
 
@@ -85,6 +81,5 @@ def _plane(paper: Paper, at: Array, b: Array) -> Panel:
     panel.text(place, f"{area:.2f}", ESTIMATED, anchor=anchor, size=16)
     panel.mark(b, "estimated", 7)
     panel.text(b + [0.05, 0.45], "b", ESTIMATED, size=18)
-    panel.mark(at, "world", 7)
-    panel.grip("foot", "m, on the blue line", at, 3)
+    panel.grip("foot", "m, on the blue line", at, 3, "world", 7)
     return panel

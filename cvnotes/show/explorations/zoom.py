@@ -24,10 +24,8 @@ _GLASS, _LEGS, _PALE, _GREEN = "#DDEFFA", "#A9D5F1", "#B9CFE0", "#3A6A66"
 def zoom_model() -> Model:
     """Make the model of one room from one spot, with the sensor at any distance."""
     settings = (Setting("alpha", "α (px)", _LEAST, 1500, 10, _FIRST, "the focal length"),)
-    about = (
-        "A room from above, with a camera's centre and its sensor before it, and the angle that "
-        "the sensor sees; beside it the photograph."
-    )
+    about = """A room from above, with a camera's centre and its sensor before it, and the angle
+    that the sensor sees; beside it the photograph."""
 
     def draw(paper: Paper, values: Values) -> Drawing:
         alpha = values["alpha"]
@@ -36,22 +34,15 @@ def zoom_model() -> Model:
         ends, angle, width = _seen(alpha)
         photo.line(ends, IDEAL, 2)
         photo.text(ends.mean(axis=0) - [0, 18], f"{width:.0f} px", IDEAL, anchor="mm", size=15)
-        said = (
-            f"With α = {alpha:g} px the camera sees {angle:.1f}°, and the blackboard is "
-            f"{width:.0f} px wide."
-        )
+        said = f"""With α = {alpha:g} px the camera sees {angle:.1f}°, and the blackboard is
+        {width:.0f} px wide."""
         if alpha != _FIRST:
             _, first, narrow = _seen(_FIRST)
-            said += (
-                f" Against {_FIRST} px: α × {alpha / _FIRST:.2f}, blackboard × "
-                f"{width / narrow:.2f}, angle ÷ {first / angle:.2f}."
-            )
+            said += f""" Against {_FIRST} px: α × {alpha / _FIRST:.2f}, blackboard ×
+            {width / narrow:.2f}, angle ÷ {first / angle:.2f}."""
         return Drawing(paper.join((_plan(paper, alpha, angle), photo)), said)
 
-    def pulled(_: Values, at: Array) -> Values:
-        return {"alpha": float(at[0]) / _MM}
-
-    return Model("zoom", about, settings, draw, {"sensor": pulled})
+    return Model("zoom", about, settings, draw, {"sensor": lambda _, at: {"alpha": at[0] / _MM}})
 
 
 def _seen(alpha: float) -> tuple[Array, float, float]:

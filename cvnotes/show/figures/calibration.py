@@ -21,6 +21,10 @@ _COLOUR = (0.96, 0.55, 0.16)  # of the side that is lit best
 _EDGE = (1.0, 0.86, 0.7)
 # Outwards from the top, the bottom, low and high x, low and high y.
 _NORMALS = np.array([[0, 0, -1], [0, 0, 1], [-1, 0, 0], [1, 0, 0], [0, -1, 0], [0, 1, 0]])
+# On a face of side 1: of an odd number the middle one, then pairs. Opposite faces make seven.
+_SPOTS = np.array([[0, 0], [1, 1], [-1, -1], [1, -1], [-1, 1], [1, 0], [-1, 0]]) / 3.7
+_NUMBERS = 5, 2, 3, 4, 1, 6
+_ROUND = 0.09 * np.stack([f(np.linspace(0, 2 * np.pi, 33)) for f in (np.cos, np.sin)], axis=1)
 _AMBIENT, _STEEP = 0.45, 0.5  # brightness without light; sine of the flattest light with a shadow
 
 
@@ -32,7 +36,7 @@ def draw_cube(
     light: npt.ArrayLike = DESK_LIGHT,
     ax: "Axes | None" = None,
 ) -> "Axes":
-    """Draw a cube that stands on a board, with its shadow, as the camera would photograph it.
+    """Draw a cube, a die, that stands on a board, with its shadow, as the camera would see it.
 
     Parameters
     ----------
@@ -87,10 +91,14 @@ def draw_cube(
         ax.add_collection(under, autolim=False)
     faces = _outline(camera, cube.faces)
     shades = _AMBIENT + 0.65 * np.maximum(_NORMALS @ lit, 0)
-    for (u, v), shade in zip(faces.transpose(0, 2, 1), shades.clip(0, 1), strict=True):
+    sides = zip(cube.faces, faces.transpose(0, 2, 1), shades.clip(0, 1), _NUMBERS, strict=True)
+    for (a, b, _, d), (u, v), shade, n in sides:
         if np.sum(u * np.roll(v, -1) - v * np.roll(u, -1)) > 0:  # nothing hides this face
-            colour = np.multiply(shade, _COLOUR)
+            colour, edge = np.multiply.outer(shade, [_COLOUR, _EDGE])
             ax.fill(u, v, facecolor=colour, edgecolor=_EDGE, linewidth=0.6, zorder=3)
+            spots = (_SPOTS[1 - n % 2 : n + 1 - n % 2, None] + _ROUND + 0.5) @ [b - a, d - a] + a
+            dots = PolyCollection(list(camera.project(spots)), color=edge, linewidth=0, zorder=3)
+            ax.add_collection(dots, autolim=False)
     ax.set(xlim=limits[0], ylim=limits[1])
     return ax
 

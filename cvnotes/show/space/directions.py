@@ -1,5 +1,7 @@
 """Where a scene is seen from, and the sheet that it is seen on."""
 
+from collections.abc import Callable
+
 import numpy as np
 
 from cvnotes.base import Array
@@ -16,6 +18,17 @@ def towards(view: tuple[float, float]) -> Array:
     elevation, azimuth = np.deg2rad(view)
     level = np.cos(elevation)
     return np.array([level * np.cos(azimuth), -np.sin(elevation), level * np.sin(azimuth)])
+
+
+def onto(axes: Array) -> Callable[[Array], Array]:
+    """Return what projects points (..., 3) onto a sheet (..., 2), all parallel, by its axes (2, 3).
+
+    Examples
+    --------
+    >>> onto(np.eye(3)[:2])(np.array([4.0, 5, 6]))
+    array([4., 5.])
+    """
+    return lambda W: np.asarray(W @ axes.T)
 
 
 def sheet(view: tuple[float, float]) -> Array:

@@ -98,8 +98,7 @@ def axes_shapes(
 
 
 def target_shapes(
-    target: Chessboard | TwoPlanes | ThreePlanes,
-    world_from_target: npt.ArrayLike | None = None,
+    target: Chessboard | TwoPlanes | ThreePlanes, world_from_target: npt.ArrayLike | None = None
 ) -> Shapes:
     """Return a target: the squares of its boards, and a square of white paper around them.
 

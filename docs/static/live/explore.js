@@ -15,9 +15,18 @@
     return setting.choice || setting.names?.length ? "" : value.toFixed(digits(setting)).replace("-", "−");
   }
 
+  function cellsUpTo(output) {
+    const cells = [...document.querySelectorAll("div.cell")];
+    const here = cells.indexOf(output.closest("div.cell"));
+    return cells.slice(0, here + 1).map((cell) => cell.querySelector(".cell_input pre")?.textContent ?? "");
+  }
+
   class Exploration {
     constructor(told, output, still) {
       this.told = told;
+      this.place = { output, still };
+      // Points that are pulled ask a function of the page's cells: these are told, too.
+      if (told.name === "pull_points") this.cells = told.cells ?? cellsUpTo(output);
       this.values = { ...told.values };
       this.busy = false;
       this.next = null;
@@ -42,7 +51,7 @@
         controls.append(make("details", {}, make("summary", { textContent: "sliders" }), folded));
       const reset = make("button", { type: "button", textContent: "Reset", className: "live-button" });
       reset.addEventListener("click", () => this.reset());
-      controls.append(reset);
+      controls.append(reset, ...(this.cells ? this.ownPhotograph() : []));
       const name = `Exploration: ${told.name}`;
       const parts = [this.stage, this.sentence, this.state, this.matrices, controls];
       output.replaceChildren(make("div", { className: "explore", role: "group", ariaLabel: name }, ...parts));
@@ -72,6 +81,28 @@
       return make("div", { className: "explore-control" }, label, input, number);
     }
 
+    // A photograph of the reader's own takes the place of the picture. It stays on this machine.
+    ownPhotograph() {
+      const file = make("input", { type: "file", accept: "image/*", hidden: true });
+      const what = { textContent: "Your own photograph", title: "It stays on this machine" };
+      const button = make("button", { type: "button", className: "live-button", ...what });
+      button.addEventListener("click", () => file.click());
+      file.addEventListener("change", async () => {
+        const [given] = file.files;
+        if (!given) return;
+        try {
+          const bytes = await given.arrayBuffer();
+          const question = { kind: "photograph", cells: this.cells, name: given.name, bytes };
+          const { rest, photo } = await live.ask(question, { say: (text) => this.say(text) });
+          const { output, still } = this.place;
+          new Exploration({ ...JSON.parse(rest), cells: this.cells, photo }, output, still).want({});
+        } catch (error) {
+          this.say(error.message);
+        }
+      });
+      return [button, file];
+    }
+
     reset() {
       this.show(Object.fromEntries(this.told.settings.map(({ name, value }) => [name, value])));
       this.want({});
@@ -93,8 +124,8 @@
 
     want(change) {
       clearTimeout(this.rest);
-      const { name, camera, board } = this.told;
-      const wanted = { name, camera, board, values: { ...this.values }, narrow: this.narrow, sharpness: 1, ...change };
+      const { name, camera, board, photo } = this.told;
+      const wanted = { name, camera, board, photo, cells: this.cells, values: { ...this.values }, narrow: this.narrow, sharpness: 1, ...change };
       if (this.busy) this.next = wanted;
       else this.draw(wanted);
     }

@@ -33,6 +33,19 @@ const answer = {
     shown.destroy();
     return [{ pixels: pixels.buffer, rest }, [pixels.buffer]];
   },
+  photograph({ id, cells, name, bytes }) {
+    const photo = `/${id} ${name.replaceAll("/", "-")}`;
+    python.FS.writeFile(photo, new Uint8Array(bytes));
+    const given = python.toPy(cells);
+    try {
+      return [{ rest: from("cvnotes.show.explorations.page", "with_photograph")(given, photo), photo }];
+    } catch (error) {
+      error.message = error.message.replaceAll(photo, name); // as the reader knows it
+      throw error;
+    } finally {
+      given.destroy();
+    }
+  },
   async check({ id, name, question, code, seconds }) {
     const wanted = [...new Set(code.match(LARGE) ?? [])].filter((one) => !loaded.has(one));
     if (wanted.length) {
@@ -63,6 +76,7 @@ onmessage = async ({ data }) => {
     const lines = String(error.message ?? error).trim().split("\n");
     const said = lines.findLast((line) => /^[\w.]+(Error|Exception): /.test(line)) ?? lines.at(-1);
     const lost = !(error instanceof python.ffi.PythonError);
-    postMessage({ id: data.id, error: `Python stopped: ${said}`, lost });
+    const [, ours] = /^cvnotes\.base\.errors\.\w+: (.*)$/.exec(said) ?? []; // a sentence of its own
+    postMessage({ id: data.id, error: ours ?? `Python stopped: ${said}`, lost });
   }
 };
