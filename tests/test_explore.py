@@ -4718,6 +4718,9 @@ def test_a_nail_stands_upright_on_its_board_and_its_head_comes_to_where_it_is_pu
             assert grip.at == pytest.approx([u + (i - 1) % 2 * w, v + (i - 1) // 2 * h], abs=0.01)
             there = model.dragged(f"nail {i}", grip.at, lens=lens)
             assert [there[f"right{i}"], there[f"down{i}"]] == [round(right), round(down)]
+    grip = grip_of(model.drawing(**{f"right{i}": 1, f"down{i}": -1}), f"nail {i}")
+    there = model.dragged(f"nail {i}", grip.at, **{f"right{i}": 20, f"down{i}": 9})
+    assert there[f"right{i}"] == there[f"down{i}"] == 0  # it springs upright
 
 
 def test_what_is_left_with_a_believed_k1_is_what_a_library_leaves_that_finds_the_rest():

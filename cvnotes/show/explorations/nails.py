@@ -16,7 +16,7 @@ _SIZE, _BARS, _GAP = (504, 378), (350, 378), 16  # px of the page; px between ph
 _GREY = "#ECECEC"
 _MOST, _START = 40, ((0, -30), (30, 0), (-30, 0), (0, 30))  # degrees, to the right and down
 _AIMS = np.array([[285, 235], [365, 235], [285, 265], [365, 265]])  # px, of the boards' middles
-_FAR, _NAIL = 560.0, 130.0  # mm: how far away the boards are, how long a nail is
+_FAR, _NAIL, _UPRIGHT = 560.0, 130.0, 4.5  # mm: of the boards, of a nail, of a head that springs
 _NOISE, _UNKNOWN = 0.1, 1000  # px: of the corners, and from where on nothing is known
 _BEYOND = 0.4  # powers of ten: how long the arrow is to what is not known
 _LABELS = ("αᵤ", "αᵥ", "u₀", "v₀")
@@ -74,14 +74,14 @@ def _at(i: int) -> Array:
 
 def _pulled(i: int) -> Drag:
     def drag(values: Values, at: Array) -> Values:
-        """Let the nail's head follow: it is on a sphere about the middle of the board."""
+        """Let the nail's head follow: on a sphere, it springs upright near 0°."""
         camera = camera_of(values)
         ray = np.append(camera.ideal(np.clip(at - _at(i), 0, np.subtract(camera.size, 1))), 1.0)
         middle = move(held(values)[i - 1], course.board().points.mean(axis=0))
         a, b = ray @ ray, ray @ middle
         near = b - np.sqrt(max(b * b - a * (middle @ middle - _NAIL**2), 0))  # or beside it
         x, y, z = near / a * ray - middle
-        far = np.degrees(np.arctan2(np.hypot(x, y), -z)) / max(np.hypot(x, y), 1e-9)
+        far = np.degrees(np.arctan2(out, -z)) / out if (out := np.hypot(x, y)) > _UPRIGHT else 0
         return {f"right{i}": float(far * x), f"down{i}": float(far * y)}
 
     return drag
@@ -104,7 +104,7 @@ def _draw(paper: Paper, values: Values) -> Drawing:
             panel.polygons([nail[1] + size * panel.pixel * circle(33)], ink)
         panel.grip(f"nail {i}", f"the nail of photograph {i}", nail[1], 2)
         lean = np.hypot(values[f"right{i}"], values[f"down{i}"])
-        panel.text([u + 22, v + 36], f"{lean:.0f}°", IDEAL, size=14, rim=_GREY)
+        panel.text([u + 22, v + 36], f"{i}: {lean:.0f}°", IDEAL, size=14, rim=_GREY)
     std, rms = known(values)
     said = ", ".join(f"{name} {_number(one)}" for name, one in zip(_LABELS, std, strict=True))
     sentence = f"Standard deviations: {said}. The RMS is {rms:.2f} px."
