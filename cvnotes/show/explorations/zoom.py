@@ -27,7 +27,7 @@ def zoom_model() -> Model:
     """Make the model of one room from one spot, with the sensor at any place before it."""
     settings = (
         Setting("alpha", "α (px)", _LEAST, 1500, 10, _FIRST, "the focal length", TURN),
-        Setting("u0", "u₀ (px)", 239.5, 399.5, 20, _MIDDLE, "where the axis meets it", SHIFT),
+        Setting("u0", "u₀ (px)", 239.5, 399.5, 0.5, _MIDDLE, "where the axis meets it", SHIFT),
     )
     about = """A room from above, with a camera's centre and its sensor before it, and the angle
     that the sensor sees; beside it the photograph, and A."""
@@ -49,7 +49,8 @@ def zoom_model() -> Model:
         table = matrix_table(A, "A", np.where(A % 1, 1, 0), _TINTS)
         return Drawing(paper.join((_plan(paper, alpha, u0, angle), photo)), said, table)
 
-    drags = {"sensor": lambda _, at: {"alpha": at[0] / _MM, "u0": _MIDDLE - at[1] / _MM}}
+    # Sideways in steps of 20 px, 100 mm of the plan: else a hand could not pull straight ahead.
+    drags = {"sensor": lambda _, at: {"alpha": at[0] / _MM, "u0": 319.5 - 20 * round(at[1] / 100)}}
     return Model("zoom", about, settings, draw, drags)
 
 
