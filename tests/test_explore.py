@@ -2581,6 +2581,27 @@ def test_three_times_the_focal_length_is_three_times_the_blackboard_and_no_third
     assert off[0] < 2 < 0.4 * off[1]
 
 
+def test_a_sensor_pushed_sideways_moves_the_picture_and_one_number_of_a():
+    for alpha, u0 in ((300, 239.5), (400, 399.5), (1200, 359.5)):
+        drawing = MODELS["zoom"].drawing(alpha=alpha, u0=u0)
+        left, right = (np.degrees(np.arctan(x / alpha)) for x in (u0 + 0.5, 639.5 - u0))
+        assert numbers(drawing.sentence)[1] == pytest.approx(left + right, abs=0.06)
+        told = re.findall(r"<td[^>]*>([^<]*)</td>", drawing.matrices)
+        assert told == [f"{alpha}", "0", f"{u0}", "0", f"{alpha}", "239.5", "0", "0", "1"]
+        first = 530 - (516 + 6 + MARGIN)
+        taken = drawing.picture[TITLE + 60 : TITLE + 270, 530:880].astype(int)
+        expected, middle = (
+            render_scene(room(), zoom.camera_at(alpha, (372, 279), at), samples=4)[60:270]
+            for at in (u0, 319.5)
+        )
+        at = slice(first, first + 350)
+        off = [np.abs(taken - other[:, at].astype(int)).mean() for other in (expected, middle)]
+        assert off[0] < 3 < 0.4 * off[1]
+    # The sensor is pushed to the right, downwards in the plan: the axis meets it farther left.
+    pulled = MODELS["zoom"].dragged("sensor", (2000, 300))
+    assert pulled == {"alpha": 400, "u0": 259.5}
+
+
 def test_the_pixel_of_the_followed_corner_is_written_beside_the_box(written):
     for values in ({}, {"alpha": 1000}, {"turn": -20}):
         MODELS["formation"].drawing(**values)

@@ -16,7 +16,7 @@ import numpy.typing as npt
 from PIL import Image
 
 FOLDER = "_figures"
-_WIDE = 1.8  # widths over heights from which a figure may be cut
+_WIDE = 1.55  # widths over heights from which a figure may be cut
 _THREE = 2.6  # from which it may have three panels
 _GAP = 8  # px without ink that part two panels; a photograph blurs four of twelve
 _INK = 250  # grey levels below which something is drawn
@@ -74,7 +74,7 @@ def panels_of(picture: npt.NDArray[np.uint8]) -> list[tuple[int, int, int, int]]
             return [(0, 0, width, height)]
         return upper + [(left, row + top, wide, high) for left, top, wide, high in lower]
     empty = np.asarray((picture >= _INK).all(axis=(0, 2)))
-    cuts, three = [_gap(empty, 0.33, 0.67)], [_gap(empty, 0.25, 0.42), _gap(empty, 0.58, 0.75)]
+    cuts, three = [_gap(empty, 0.32, 0.68)], [_gap(empty, 0.25, 0.42), _gap(empty, 0.58, 0.75)]
     halved = cuts[0] is not None and abs(cuts[0] / width - 0.5) < 0.05  # two panels, or two and two
     if width > _THREE * height and not halved and None not in three:
         cuts = three

@@ -131,8 +131,7 @@ def _bent(panel: Panel, p: Array, move: Callable[[Array, Array], Array]) -> floa
     fine, coarse = (np.linspace(-_EXTENT, _EXTENT, n) for n in (49, 11))
     across = np.stack(np.meshgrid(fine, coarse), -1)
     lines = [*across, *across[..., ::-1]]
-    for line in lines:
-        panel.line(line[[0, -1]], "#D4D4D4", 1)
+    panel.segments([line[[0, -1]] for line in lines], "#D4D4D4", 1)
     for line in lines:
         panel.line(move(_TIMES * p, line), LENS, 1.6)
     ahead, across_p = _along(p)

@@ -24,9 +24,7 @@ _OUTSIDE = [np.stack([a, b, 2 * b, 2 * a]) for a, b in pairwise(_CORNERS)]
 
 def dolly_model() -> Model:
     """Make the model of the room from near and far, with a lens that makes up for the distance."""
-    settings = (
-        Setting("distance", "distance (mm)", 1500, 7000, 250, 3000, "from camera to red box"),
-    )
+    settings = (Setting("distance", "distance (mm)", 1500, 7000, 250, 3000, "to the red box"),)
     about = """A red box in a room, and how wide the box and the blackboard behind it are in the
     picture; beside it the room from above, with the part of it that the camera sees."""
 

@@ -28,8 +28,7 @@ def glass_model() -> Model:
         Setting("z", "z (m)", 1.6, 5, 0.1, 2, "its depth"),
     )
     about = """A camera in a room, from outside, with its picture on a glass 1 m before it, and a
-    line of sight from a ball. Beside it the picture, and the ball's x and y, divided by its
-    depth."""
+    line of sight from a ball. Beside it the picture, and the ball's x and y over its depth."""
 
     def pulled(values: Values, at: Array) -> Values:
         row = _ASIDE.P[0] - at[0] * _ASIDE.P[2]  # the line on which the ball hangs, at the hand's u

@@ -17,9 +17,7 @@ _ROWS = ("x", CAMERA, -0.3, (0.6, -0.17)), ("z", LENS, -0.78, (-0.17, 0.6))
 
 def rows_model() -> Model:
     """Make the model of a camera that is turned, and of the shadows of its axes."""
-    settings = (
-        Setting("turn", "turn (°)", -180, 180, 1, -37, "of the camera on the spot, to the right"),
-    )
+    settings = (Setting("turn", "turn (°)", -180, 180, 1, -37, "of the camera, to the right"),)
     about = """A level camera from above, with its axes x and z, each 1 long; their shadows on the
     world's axes X and Z; and beside it the matrix R, whose rows they are."""
     drags = {"line of sight": lambda _, at: {"turn": np.degrees(np.arctan2(*(at - _C)))}}

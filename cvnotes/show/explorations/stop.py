@@ -31,9 +31,7 @@ _GLASS, _PLATE = "#DDEFFA", "#A6A6A6"
 
 def stop_model() -> Model:
     """Make the model of a stop that is carried through a lens."""
-    settings = (
-        Setting("stop", "the stop (mm)", -15, 15, 1, -15, "negative: before the lens's middle"),
-    )
+    settings = (Setting("stop", "the stop (mm)", -15, 15, 1, -15, "negative: before the lens"),)
     about = """A lens, cut in two, with a stop and the sensor: rays through the middle of the stop,
     bent by the glass, in blue, and dashed where an ideal lens would send them. Beside it the
     picture of a room that arises so, and below it, over the ideal radius r, L: the observed radius
@@ -119,8 +117,8 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     edge = lens.distort(_EDGE[:, :2] / _EDGE[:, 2:])
     room.line(edge[[0, -1]], IDEAL, 1.5)
     room.line(edge, LENS, 3)
-    drawn = paper.join((cut, [room, _factor(paper, stop, slopes)]))
-    return Drawing(drawn, _sentence(stop, float(seen[-1])))
+    column = [room, _factor(paper, stop, slopes)]
+    return Drawing(paper.join((cut, column)), _sentence(stop, float(seen[-1])))
 
 
 def _draw_lens(panel: Panel) -> None:
@@ -164,14 +162,12 @@ def _draw_stop(panel: Panel, stop: float) -> None:
 
 def _factor(paper: Paper, stop: float, slopes: Array) -> Panel:
     """Draw by which factor the rays arrive farther out than meant, and polynomials through it."""
-    title = "L over r (negative: on the other side)"
-    panel = paper.panel(_FACTOR, (-_FAR, _FAR), (_MOST, _LEAST), title)
+    panel = paper.panel(_FACTOR, (-_FAR, _FAR), (_MOST, _LEAST), "L over r (negative: other side)")
     panel.ticks(x=(-0.5, -0.25, 0, 0.25, 0.5), y=(0.95, 1, 1.05, 1.1))
     panel.line([[-_FAR, 1], [_FAR, 1]], IDEAL, 1, dash=4)
     r, k1 = np.linspace(-_FAR, _FAR, 125), _k1(stop)
-    bend, everything = 1 + k1 * r**2, lens_of(stop).L(r)
-    panel.line(np.column_stack([r, everything]), LENS, 2.2)
-    panel.line(np.column_stack([r, bend]), ESTIMATED, 1.5, dash=4)
+    panel.line(np.column_stack([r, lens_of(stop).L(r)]), LENS, 2.2)
+    panel.line(np.column_stack([r, 1 + k1 * r**2]), ESTIMATED, 1.5, dash=4)
     high = 1.045 if k1 < 0.1 else 0.955  # where no curve is
     panel.text([0, high], "dashed: 1 + k₁r²", ESTIMATED, anchor="mm")
     ideal, seen = radii(stop, slopes)
