@@ -126,7 +126,7 @@ def _side(paper: Paper, at: Array) -> tuple[Panel, list[float]]:
     """Draw the board from the side; return with it how far its middle is, in the origin's depth."""
     width, height = _NARROW if paper.narrow else _WIDE
     low = _HIGH + (_AWAY[1] - _AWAY[0]) * height / width
-    title = "from the side; below, the depth in that of the origin"
+    title = "from the side; below, the depth (that of the origin is 1)"
     panel = paper.panel((width, height), _AWAY, (_HIGH, low), title)
     hinge, *boards = (one[..., [2, 1]] for one in believed(at))
     middles = [board.mean(axis=0) for board in boards]

@@ -17,7 +17,7 @@ from cvnotes.show.explorations.paper import Drawn, Panel, Paper
 from cvnotes.show.style import ESTIMATED, IDEAL, LENS
 
 _BOARD, _CAMERA = course.board(), Camera(course.camera().A, course.poses()[6])
-_PART = (160, 76), (580, 420)  # px: the part of the picture that is shown
+_PART = (160, 78), (580, 420)  # px: the part of the picture that is shown
 _DRAWS, _NOISE = 60, 0.3  # px
 _WRONG, _LINE = "#7A7A7A", "#8A8A8A"
 
@@ -48,14 +48,14 @@ def ransac_model() -> Model:
         agree = np.linalg.norm(put - pairs, axis=-1) < limit
         (left, top), (right, bottom) = _PART
         part, title = (right - left, bottom - top), "the pairs, and one homography"
-        panel = paper.picture_panel((504, 413), part, title, (left, top))
+        panel = paper.picture_panel((504, 410), part, title, (left, top))
         panel.image(photograph())
         _draw_pairs(panel, put[n], pairs, agree[n], true)
         panel.mark(fours[n][: 4 * min(n, 1)], "ideal", 8)
         panel.text([right - 12, top + 24], f"{agree[n].sum()} agree", LENS, anchor="rm", size=22)
         _name_marks(panel, left + 16, bottom - 14)
         title = "pairs that agree, draw by draw"
-        votes = paper.panel((276, 413), (-4, _DRAWS + 3), (60, -9), title)
+        votes = paper.panel((276, 410), (-4, _DRAWS + 3), (60, -9), title)
         counts = agree.sum(axis=1)
         _draw_votes(votes, counts[: n + 1])
         return Drawing(paper.join((panel, votes)), _sentence(n, agree, true))

@@ -103,8 +103,8 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     for at, radius, ink in sizes:
         panel.polygons(at[:, None] + radius * panel.pixel * circle(17), ink)
     moved = [(net - dots)[0] for net in nets(row, column, values["du"], values["dv"])]
-    for by, colour in zip(moved, _INKS, strict=True):
-        panel.arrows(dots[0], _TIMES * by, colour, 2.4)
+    for by, colour in sorted(zip(moved, _INKS, strict=True), key=lambda one: -abs(one[0]).max()):
+        panel.arrows(dots[0], _TIMES * by, colour, 2.4)  # the longer first: none hides a shorter
     tips = dots[0] + _TIMES * moved[1]
     panel.polygons(tips[:, None] + 2.8 * panel.pixel * circle(17), ESTIMATED)  # short arrows, too
     rows = zip(held, dots[:, 0, 1], weights(), strict=True)
