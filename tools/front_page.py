@@ -43,7 +43,7 @@ BOOK = "M12 6v14M12 6C9 4 6 4 2.5 4.5v14C6 18 9 18 12 20c3-2 6-2 9.5-1.5v-14C18 
 PLAY = "M12 2.5a9.5 9.5 0 1 0 .01 0zM9.8 7.8v8.4l6.8-4.2z"
 LENS = "M2.5 7h4.5l2-3h6l2 3h4.5v13h-19zM12 9a4.2 4.2 0 1 0 .01 0z"
 
-# The most frequent mistake of all, as a student writes it.
+# A common mistake, as a student writes it.
 WRONG = """def my_camera_centre(R, T):
     return T
 
@@ -58,14 +58,16 @@ the camera.</p>"""
 SOLUTION = """<details><summary>Answer</summary><p>No: when the foot is right,
 the top is not. <a href="notebooks/00_start_here.html">Chapter 0</a> says why.</p></details>"""
 # What docs/static/live/exercises.js makes a box of.
-BOX = """A student's answer is in the box: press *Check*.
+BOX = """A student writes `return T`, and below it the
+course answers. Mend it, and press *Check*.
 
 ```{raw} html
-<div class="front-answer"><div class="cell_input"><pre>@</pre></div></div>
+<div class="front-answer"><div class="cell_input"><pre>@CODE@</pre></div>
+<p class="front-reply"><strong>Not yet right.</strong> @SAID@</p></div>
 ```"""
 REPLY = """A student writes `return T`, and the course answers:
 
-> **Not yet right.** @"""
+> **Not yet right.** @SAID@"""
 
 
 def camera_centre(R: object, T: object) -> object:  # noqa: ARG001
@@ -101,11 +103,11 @@ def sentence(readme: str) -> str:
 
 
 def whom(readme: str) -> str:
-    """Return for whom README says the course is, what it needs and how long it takes."""
-    found = re.search(r"^For students .+$", readme, re.M)
+    """Return for whom README says the course is and what it needs, and how long it takes."""
+    found = re.search(r"^For students .+ some (?=\d+ hours\.$)", readme, re.M)
     if not found:
         raise ValueError("README.md has no line 'For students ...', which the front page repeats")
-    return found[0]
+    return f"{found[0]}{round(sum(map(sum, minutes().values())) / 60)} hours."
 
 
 def buttons(live: bool, lite: bool) -> str:
@@ -119,7 +121,7 @@ def buttons(live: bool, lite: bool) -> str:
     own = "your_camera.html" if live else "notebooks/09_your_own_camera.html"
     at_home = "on your machine", ""
     ways = (  # on a telephone only the name, and what it costs
-        (f"{start}.html", BOOK, "Read", "chapter 0, half an hour", ""),
+        (f"{start}.html", BOOK, "Read", f"chapter 0, {minutes()['00_start_here'][0]} minutes", ""),
         (run, PLAY, "Run", *(("Python in this page, ", "66 MB once") if lite else at_home)),
         (own, LENS, "Your own camera", "from photographs of a chessboard", ""),
     )
@@ -150,10 +152,11 @@ def exploration(live: bool) -> str:
 
 
 def answer(live: bool) -> str:
-    """Write a wrong answer into a box that checks it, or, without Python, what the course says."""
+    """Write a wrong answer and what the course says to it; with Python, in a box that checks."""
+    said = check("camera_centre", camera_centre).message
     if live:
-        return BOX.replace("@", escape(WRONG))
-    return REPLY.replace("@", check("camera_centre", camera_centre).message)
+        return BOX.replace("@CODE@", escape(WRONG)).replace("@SAID@", escape(said))
+    return REPLY.replace("@SAID@", said)
 
 
 def card(number: str, title: str, name: str, question: str) -> str:
@@ -178,7 +181,18 @@ def parts() -> dict[str, str]:
     """Return what a chapter does to the camera, and its hours, as the table of chapter 0 says."""
     first = json.loads((ROOT / "notebooks" / "00_start_here.ipynb").read_text(encoding="utf-8"))
     said = "\n".join("".join(cell["source"]) for cell in first["cells"])
-    return {name: f"{part} · {hours} h" for part, name, hours in _PART.findall(said)}
+    rows = {name: f"{part} · {hours} h" for part, name, hours in _PART.findall(said)}
+    return {"00_start_here": f"overview · {sum(minutes()['00_start_here'])} min"} | rows
+
+
+@lru_cache(maxsize=1)
+def minutes() -> dict[str, list[int]]:
+    """Return the minutes of reading, and of all else, that each chapter names under its title."""
+    times = {}
+    for path in sorted(ROOT.glob("notebooks/[0-9]*.ipynb")):
+        (line,) = re.findall(r"\*\*Time\*\* .+? min\.", path.read_text(encoding="utf-8"))
+        times[path.stem] = [int(said) for said in re.findall(r"(\d+) min", line)]
+    return times
 
 
 def put_pictures(made: Path) -> None:

@@ -60,6 +60,10 @@ def panels_of(picture: npt.NDArray[np.uint8]) -> list[tuple[int, int, int, int]]
     >>> picture[20:80, 10:130] = picture[20:80, 160:290] = 0
     >>> panels_of(picture)
     [(0, 0, 145, 100), (145, 0, 155, 100)]
+    >>> uneven = np.full((100, 300, 3), 255, np.uint8)
+    >>> uneven[20:80, 10:195] = uneven[20:80, 210:290] = 0
+    >>> panels_of(uneven)
+    [(0, 0, 202, 100), (202, 0, 98, 100)]
     >>> picture[5:12, 20:80] = picture[5:12, 180:220] = 0  # titles, which stay with their panels
     >>> [panel[:2] for panel in panels_of(np.vstack([picture, picture]))]
     [(0, 0), (145, 0), (0, 92), (145, 92)]
@@ -74,7 +78,7 @@ def panels_of(picture: npt.NDArray[np.uint8]) -> list[tuple[int, int, int, int]]
             return [(0, 0, width, height)]
         return upper + [(left, row + top, wide, high) for left, top, wide, high in lower]
     empty = np.asarray((picture >= _INK).all(axis=(0, 2)))
-    cuts, three = [_gap(empty, 0.32, 0.68)], [_gap(empty, 0.25, 0.42), _gap(empty, 0.58, 0.75)]
+    cuts, three = [_gap(empty, 0.29, 0.71)], [_gap(empty, 0.25, 0.42), _gap(empty, 0.58, 0.75)]
     halved = cuts[0] is not None and abs(cuts[0] / width - 0.5) < 0.05  # two panels, or two and two
     if width > _THREE * height and not halved and None not in three:
         cuts = three

@@ -16,7 +16,7 @@ def camera_centre(R: Array, T: Array) -> Array:
 
 MISTAKES = mistakes_in(camera_centre,
     ("T itself", "T is where the world's origin is seen from the camera, not where the camera "
-     "stands. To take one for the other is the most frequent mistake of all.",
+     "stands. To take one for the other is a common mistake.",
      "T"),
     ("rotated the wrong way",
      "R leads from the world to the camera; the way back needs its inverse, and a sign.",
