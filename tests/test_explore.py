@@ -3993,7 +3993,7 @@ FREE_TO_MOVE = {
     "similar": {"f": 7},
     "clicks": {"noise": 0.4},
     "eye": {"tilt": 9, "roll": 0},
-    "thirteen": {"pair": 5},
+    "thirteen": {"pair": 3},
     "stop": {"stop": 0},
     "imitation": {"turn": -60},
 }

@@ -31,7 +31,7 @@ class Measured(NamedTuple):
     right: Array  # the right camera's centre
     promised: float
     scatter: float
-    apart: float  # px by which a corner's two rows differ
+    apart: float  # px by which a corner's two rows differ, but for what grows evenly
 
 
 def thirteen_model() -> Model:
@@ -65,13 +65,13 @@ def _measured(i: int) -> Measured:
     rig = calibrate_stereo(real.board.points, *pair, real.size, lens="k1 k2 p1 p2")
     W = triangulate(rig.cameras, [real.left[i], real.right[i]])
     missed = real.left[i] - rig.left.project(W) - (real.right[i] - rig.right.project(W))
-    apart = float(np.std(missed[:, 1]))
+    both = np.column_stack([W[:, 2], missed[:, 1]])
     flat = np.column_stack([W[:, :2], np.ones(len(W))])
-    off = W[:, 2] - flat @ np.linalg.lstsq(flat, W[:, 2], rcond=None)[0]
+    scatter, apart = np.std(both - flat @ np.linalg.lstsq(flat, both, rcond=None)[0], axis=0)
     centre = rig.right.centre
     promised = W[:, 2].mean() ** 2 / (rig.left.A[0, 0] * np.linalg.norm(centre)) * apart
     board = W.reshape(*real.board.corners[::-1], 3)
-    return Measured(board, centre, float(promised), float(np.std(off)), apart)
+    return Measured(board, centre, float(promised), float(scatter), float(apart))
 
 
 def lengths(board: Array) -> Array:
