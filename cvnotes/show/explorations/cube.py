@@ -247,7 +247,7 @@ def _draw_camera(panel: Panel, camera: Camera, tower: Array) -> None:
     x, y = (_BESIDE.project(C + 50 * camera.R[2]) - centre).tolist()
     if np.linalg.norm(centre - right) > 5:  # the way back
         panel.mark(right, "camera", 8, (x, y))
-        panel.text(right + [24, -4], "here it stood", CAMERA)
+        panel.text(right + [24, -46], "here it stood", CAMERA)
     *pane, top = on_pane(np.array([[0, 0], [w, 0], [w, h], [0, h], [w / 2, 0]]) - 0.5)
     sides = np.stack([np.broadcast_to(centre, (4, 2)), pane, np.roll(pane, -1, axis=0)], axis=1)
     panel.polygons([np.array(pane)], _GLASS)
