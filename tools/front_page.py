@@ -103,11 +103,11 @@ def sentence(readme: str) -> str:
 
 
 def whom(readme: str) -> str:
-    """Return for whom README says the course is and what it needs, and how long it takes."""
-    found = re.search(r"^For students .+ some (?=\d+ hours\.$)", readme, re.M)
+    """Return for whom README says the course is, what it needs and how long it takes."""
+    found = re.search(r"^For students .+$", readme, re.M)
     if not found:
         raise ValueError("README.md has no line 'For students ...', which the front page repeats")
-    return f"{found[0]}{round(sum(map(sum, minutes().values())) / 60)} hours."
+    return found[0]
 
 
 def buttons(live: bool, lite: bool) -> str:
