@@ -219,6 +219,23 @@ def test_a_page_is_read_at_once_and_python_comes_with_the_first_touch(all_explor
     assert comes(page, says, box, MODELS["lens"].drawing().sentence)
 
 
+def test_python_wakes_by_itself_on_the_next_page_of_who_has_asked(open_page, address):
+    page = open_page("all_explorations")
+    box = explorations(page)["lens"]
+    page.wait_for_timeout(1000)
+    assert not page.workers  # nobody has asked
+    box.locator("input").first.focus()
+    page.keyboard.press("ArrowRight")
+    becomes_another(page, box, 0)
+    page.goto(f"{address}/notebooks/05_calibration_targets.html")
+    page.wait_for_selector(".explore")
+    assert comes(page, lambda: len(page.workers) == 1)
+    assert page.locator(".explore-state").all_inner_texts() == [""] * page.locator(".explore").count()
+    page.goto(f"{address}/CHANGELOG.html")  # where nothing can be asked
+    page.wait_for_timeout(1000)
+    assert not page.workers
+
+
 def test_once_python_is_awake_nothing_more_is_said_that_would_move_the_picture(all_explorations):
     page = all_explorations
     box = explorations(page)["lens"]

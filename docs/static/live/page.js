@@ -1,9 +1,11 @@
 "use strict";
 // Python for a page, in a worker that the first question wakes. `live.ask(question)` promises the
-// answer; what goes wrong comes as an Error whose message is a sentence for the page.
+// answer; what goes wrong comes as an Error whose message is a sentence for the page. Who has asked on
+// one page will ask on the next: there Python, which the browser keeps, wakes while one reads.
 const live = (() => {
   const HERE = document.currentScript.src;
   const ROOT = new URL("../../", HERE);
+  const ASKED = "cvnotes-asked"; // in this tab, on some page, and answered
   const waiting = new Map(); // questions that have no answer yet, by number
   let worker = null;
   let number = 0;
@@ -26,6 +28,7 @@ const live = (() => {
       }
       const asked = waiting.get(data.id);
       if (!asked) return;
+      if (come && data.error === undefined) remember();
       come = ""; // all of it: to be told so at each picture would move the page
       if (data.started !== undefined) return asked.started(data.started);
       waiting.delete(data.id);
@@ -63,6 +66,20 @@ const live = (() => {
       worker.postMessage({ id, ...question });
     });
   }
+
+  // A browser that keeps nothing throws.
+  function remember() {
+    try {
+      sessionStorage.setItem(ASKED, "yes");
+    } catch {}
+  }
+
+  addEventListener("load", () => {
+    try {
+      if (sessionStorage.getItem(ASKED) && document.querySelector(".explore, .exercise"))
+        ask({ kind: "wake" }).catch(() => {}); // the next question says why
+    } catch {}
+  });
 
   return { ask, end, ROOT };
 })();

@@ -24,6 +24,10 @@ function from(module, name) {
 }
 
 const answer = {
+  wake() {
+    from("cvnotes.show.explorations.page", "asked");
+    return [{}];
+  },
   explore({ question }) {
     const shown = from("cvnotes.show.explorations.page", "asked")(question);
     const proxy = shown.pixels;
