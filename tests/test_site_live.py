@@ -230,7 +230,9 @@ def test_python_wakes_by_itself_on_the_next_page_of_who_has_asked(open_page, add
     page.goto(f"{address}/notebooks/05_calibration_targets.html")
     page.wait_for_selector(".explore")
     assert comes(page, lambda: len(page.workers) == 1)
-    assert page.locator(".explore-state").all_inner_texts() == [""] * page.locator(".explore").count()
+    assert (
+        page.locator(".explore-state").all_inner_texts() == [""] * page.locator(".explore").count()
+    )
     page.goto(f"{address}/CHANGELOG.html")  # where nothing can be asked
     page.wait_for_timeout(1000)
     assert not page.workers
