@@ -29,7 +29,7 @@ def rectification_model() -> Model:
         Setting("turned", "turned (%)", 0, 100, 1, 0, "how far to the attitude that both share"),
         Setting("u", "u (px)", 60, 620, 1, 449, "a pixel of the first picture as it was taken"),
         Setting("v", "v (px)", 30, 450, 1, 205, "and its row"),
-        Setting("slid", "first slid over (%)", 0, 100, 1, 30, "how much of the second it covers"),
+        Setting("slid", "first slid over (%)", 0, 100, 1, 15, "how much of the second it covers"),
     )
     about = """Two pictures of a room, and epipolar lines that belong together. The cameras turn on
     the spot until all these lines are rows that both pictures share. The first picture is slid over
