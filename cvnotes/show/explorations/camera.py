@@ -47,9 +47,9 @@ def camera_model(camera: Camera, board: Chessboard) -> Model:
     angles, T = np.degrees(angles_of(start[:3, :3])), start[:3, 3]
     shift = "where the world's origin lies along the camera's {} axis, mm"
     settings = (
-        _tenth("x", 75, angles[0], "turns R about the board's own X axis: R = Rz Ry Rx"),
-        _tenth("y", 75, angles[1], "turns R about the camera's y axis, as turned by angle z"),
-        _tenth("z", 180, angles[2], "turns R about the camera's z axis"),
+        _tenth("x", 75, angles[0], "first turns the board about the camera's x direction"),
+        _tenth("y", 75, angles[1], "then turns it about the camera's y direction"),
+        _tenth("z", 180, angles[2], "at last turns it about the camera's z direction"),
         _whole("x", -reach, reach, T[0], shift.format("x")),
         _whole("y", -reach, reach, T[1], shift.format("y")),
         _whole("z", 0, 3.2 * reach, T[2], shift.format("z")),
@@ -213,8 +213,8 @@ def _along(panel: Panel, ends: Array) -> Array:
 
 
 def _sentence(camera: Camera, board: Chessboard, complete: bool) -> str:
-    said = f"""T = {_words(camera.T)} mm is where the camera sees the world's origin; the camera
-    stands at C = −RᵀT = {_words(camera.centre)} mm."""
+    said = f"""T = {_words(camera.T)} mm is where the camera sees the world's origin; in the
+    world's frame the camera stands at {_words(camera.centre)} mm."""
     if not complete:
         return f"{said} The part of the board behind the camera has no image."
     if camera.centre[2] > 0:
@@ -228,7 +228,7 @@ def _matrices(camera: Camera) -> str:
     """Write G."""
     of_G = {(i, j): TURN if j < 3 else SHIFT for i in range(3) for j in range(4)}
     rotations = np.array([[2, 2, 2, 0]] * 3 + [[0, 0, 0, 0]])
-    return matrix_table(camera.G, "G: camera ← world (T in mm)", rotations, of_G)
+    return matrix_table(camera.G, "G: from world to camera (T in mm)", rotations, of_G)
 
 
 def _words(x: Array) -> str:

@@ -24,8 +24,8 @@ _SLOPE, _FOCAL, _LONG = 0.32, 230, 100  # of the two rays; px: of the plane z = 
 def decentred_model() -> Model:
     """Make the model of a grid through a lens with tangential terms alone."""
     settings = (
-        Setting("down", "δ down", -0.2, 0.2, 0.004, 0.16, "the shift of the glass: 4 p₁"),
-        Setting("right", "δ to the right", -0.2, 0.2, 0.004, 0, "the shift of the glass: 4 p₂"),
+        Setting("down", "δ down", -0.2, 0.2, 0.004, 0.16, "the glass's shift, four times p₁"),
+        Setting("right", "δ to the right", -0.2, 0.2, 0.004, 0, "the glass's shift, four times p₂"),
     )
     about = """A grid through a lens whose second piece of glass, light blue, is shifted by δ: its
     tangential terms alone, each point moved three times as far. A ruler shows by how much a line

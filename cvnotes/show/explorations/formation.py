@@ -112,7 +112,7 @@ def _draw_frame(paper: Paper, camera: Camera, W: Array, way: float) -> tuple[Pan
     turned, slid = min(way, 1.0), max(way - 1.0, 0.0)
     G = part_of(camera.G, turned)
     x, y = (1 - turned) * _ABOVE + turned * _FRAME
-    steps = "from the world to the camera's frame", "÷ z: along the rays onto one plane"
+    steps = "from the world to the camera's frame", "1. G, then along the rays onto one plane"
     title = "1. G: the camera's frame, along its y" if way == 1 else steps[int(way > 1)]
     frame = paper.panel(_SIZE, (x[0], x[1]), (y[0], y[1]), title)
 

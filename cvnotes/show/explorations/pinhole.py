@@ -35,7 +35,7 @@ def pinhole_model() -> Model:
     """Make the model of a room, photographed through a hole or a lens."""
     settings = (
         Setting("hole", "hole (mm)", 0.01, _WIDEST, 0.001, 0.2, "the diameter of the hole"),
-        Setting("lens", f"a lens of {_LENS:g} mm", 0, 1, 1, 0, "a lens in place of the hole"),
+        Setting("lens", f"a lens {_LENS:g} mm wide", 0, 1, 1, 0, "a lens in place of the hole"),
         Setting("focus", "focus of the lens (m)", 0.1, 10, 0.05, 4,
                 "the depth that the lens makes sharp; a hole has none"),
     )  # fmt: skip
@@ -205,7 +205,7 @@ def _draw_lens(panel: Panel, focus: float) -> None:
 
 def _said_of_a_lens(focus: float) -> str:
     near, far = (float(disc(np.array(s), focus).max()) for s in (_CARD, _ROOM))
-    return f"""A lens of {_LENS:g} mm, focused at {focus:g} m: the card, {_CARD:g} m away, becomes
+    return f"""A lens {_LENS:g} mm wide, focused at {focus:g} m: the card, {_CARD:g} m away, becomes
     discs of {near:.2f} px, the room, 2.5 to 10 m away, of at most {far:.2f} px. Diffraction adds
     {spot(_LENS)[1]:.1f} px."""
 
@@ -213,4 +213,4 @@ def _said_of_a_lens(focus: float) -> str:
 def _said_of_a_hole(d: float) -> str:
     patch, spread = spot(d)
     return f"""A hole of {d:g} mm: its patch of light is {patch:.1f} px wide, and diffraction adds
-    {spread:.1f} px. A lens of {_LENS:g} mm has {(_LENS / d) ** 2:,.0f} times its light."""
+    {spread:.1f} px. A lens {_LENS:g} mm wide has {(_LENS / d) ** 2:,.0f} times its light."""

@@ -164,10 +164,10 @@ def _factor(paper: Paper, stop: float, slopes: Array) -> Panel:
     """Draw by which factor the rays arrive farther out than meant, and polynomials through it."""
     panel = paper.panel(_FACTOR, (-_FAR, _FAR), (_MOST, _LEAST), "L over r (negative: other side)")
     panel.ticks(x=(-0.5, -0.25, 0, 0.25, 0.5), y=(0.95, 1, 1.05, 1.1))
-    panel.line([[-_FAR, 1], [_FAR, 1]], IDEAL, 1, dash=4)
+    panel.line([[0.06 - _FAR, 1], [_FAR, 1]], IDEAL, 1)
     r, k1 = np.linspace(-_FAR, _FAR, 125), _k1(stop)
     panel.line(np.column_stack([r, lens_of(stop).L(r)]), LENS, 2.2)
-    panel.line(np.column_stack([r, 1 + k1 * r**2]), ESTIMATED, 1.5, dash=4)
+    panel.line(np.column_stack([r, 1 + k1 * r**2]), ESTIMATED, 2.2, dash=7)
     high = 1.045 if k1 < 0.1 else 0.955  # where no curve is
     panel.text([0, high], "dashed: 1 + k₁r²", ESTIMATED, anchor="mm")
     ideal, seen = radii(stop, slopes)

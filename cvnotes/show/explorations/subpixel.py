@@ -138,7 +138,7 @@ def _profile(paper: Paper, pixels: Array, name: str, ink: str) -> Panel:
 
 def _rest(off: Array, shown: bool) -> str:
     if not shown:
-        return "When each edge has one curve, show the finders. (The next pull hides them.)"
+        return "When each edge has one curve, show the finders (two programs; a pull hides them)."
     hand, *both = np.linalg.norm(off, axis=1)
     gradients, edges = (f"{x:.3f}" if x >= 0.0005 else "less than 0.001" for x in both)
     you = f"{hand:.2f}" if hand >= 0.1 else f"{hand:.3f}"
