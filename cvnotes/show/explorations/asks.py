@@ -102,7 +102,7 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     shown = (_LARGER * SIZE[0], _LARGER * SIZE[1])
     left = paper.picture_panel(shown, SIZE, "the new picture: pull the pixel that asks")
     left.image(new, smooth=False)
-    where, there = "", "where they ask, orange if over 1 px apart"
+    where, there = "", "dots where they ask, orange if over 1 px apart"
     if warp == 4:
         nearer = f"{np.hypot(*(at - here)):.2f} px nearer to the middle"
         where, there = f", {nearer}", f"it asks {nearer}"
@@ -199,7 +199,7 @@ def _near(paper: Paper, photo: Drawn, asked: Array, pixel: tuple[int, int]) -> P
     begin = low + 1 - _NEAR // 2
     u, v = begin.tolist()
     x, y = (u - 0.5, u + _NEAR - 0.5), (v - 0.5, v + _NEAR - 0.5)
-    panel = paper.panel((180, 180), x, y, "its four pixels, weighted")
+    panel = paper.panel((180, 180), x, y, "its four; small ×: neighbours")
     padded = np.pad(photo, ((_NEAR, _NEAR), (_NEAR, _NEAR), (0, 0)), constant_values=255)
     u, v = np.clip([u, v], -_NEAR, SIZE) + _NEAR
     piece = padded[v : v + _NEAR, u : u + _NEAR].astype(float)

@@ -43,10 +43,13 @@ def taken(blur: float) -> Array:
 
 
 def blurred(n: int, sigma: float) -> Array:
-    """Return the matrix (n, n) of a Gaussian blur along rows or columns: a page has no SciPy."""
-    at = np.arange(n)
-    bell = np.exp(-0.5 * ((at[:, None] - at) / sigma) ** 2)
-    return np.asarray(bell / bell.sum(axis=1, keepdims=True))
+    """Return the matrix (n, n) of a Gaussian blur along rows or columns: a page has no SciPy.
+
+    Beyond the border the last pixel goes on.
+    """
+    at, far = np.arange(n), np.arange(-n, 2 * n)
+    bell = np.exp(-0.5 * ((at[:, None] - far) / sigma) ** 2)
+    return np.asarray(bell / bell.sum(axis=1, keepdims=True) @ (far.clip(0, n - 1)[:, None] == at))
 
 
 def _draw(paper: Paper, values: Values) -> Drawing:
