@@ -146,7 +146,7 @@ def _bars(paper: Paper, left: Array) -> Panel:
 def _curve(paper: Paper, values: Values, left: float) -> Panel:
     """Draw what is left of that of k2 against the tilt, at the same place of the picture."""
     u, v, tilt = values["u"], values["v"], values["tilt"]
-    title = "what is left for k₂, against the tilt of the outer edge (°)"
+    title = "what is left for k₂, by tilt (°, +: outer corner nearer)"
     panel = paper.panel(_CURVE, (-56, 52), (1.12, -0.2), title)
     panel.ticks(x=(-45, -30, -15, 0, 15, 30, 45), y=(0, 0.5, 1))
     square = faces_its_ray(u, v)

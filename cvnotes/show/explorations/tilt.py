@@ -110,7 +110,7 @@ def _draw(lenses: _Lenses, paper: Paper, values: Values) -> Drawing:
         sentence += "no picture of this board tells the one lens from the other."
     else:
         times = misfit / _NOISE
-        sentence += f"{times:.2g} times what noise of 0.1 px along each axis makes of one."
+        sentence += f"{times:.2g} times the {_NOISE:.2f} px of noise, 0.1 px along each axis."
     return Drawing(paper.join((picture, _draw_valley(lenses, paper, tilt, alpha))), sentence)
 
 
