@@ -1204,8 +1204,8 @@ def test_the_yellow_cell_is_where_the_camera_sees_it_and_as_far_as_the_map_says(
     assert (np.abs(seen.min(axis=0) - corners.min(axis=0)) < [11, 4]).all()
     assert (np.abs(seen.max(axis=0) - corners.max(axis=0)) < [11, 4]).all()
     said = numbers(drawing.sentence)
-    *place, w = said[1:5]  # the quadruple, whose third number is 1
-    assert [said[0], said[3], said[5]] == [round(away), 1, 4]
+    *place, w = said[2:6]  # the quadruple, whose third number is 1
+    assert [*said[:2], said[4], said[6]] == [round(z), round(away), 1, 4]
     assert np.array([*place, w]) / w == pytest.approx([x, 1.95, z, 1], rel=0.06, abs=1e-9)
     assert said[-1] == pytest.approx(corners[0, 1] - corners[2, 1], rel=0.06)
 
@@ -1379,7 +1379,7 @@ def test_a_wrong_camera_draws_the_tower_where_its_own_lines_of_sight_meet_its_pi
             j, i = round(u / 2) - 80, round(v / 2)  # 160 of its pixels are cut off on the left
             near = seen[i - 2 : i + 3, j - 2 : j + 3].reshape(-1, 3)
             assert (np.abs(near - colour(ink)).max(axis=1) < 60).any(), (away, alpha, ink)
-    assert "is where the true camera sees it, to 0.0" in tower.drawing().sentence
+    assert "corners is where it belongs, to 0.0" in tower.drawing().sentence
     off = [numbers(tower.drawing(away=away).sentence)[-1] for away in (0, -50, -100, -200, 60)]
     assert off[0] < 0.05
     assert 20 < off[1] < off[2] < off[3]

@@ -86,8 +86,8 @@ def test_the_mistake_in_the_box_is_named_before_it_is_checked_and_without_python
 
 def test_a_card_tells_how_long_its_chapter_takes():
     page = front_page.front_page(live=True, lite=True)
-    assert "<small>build · 1¾ h</small> <strong>1 · Projective space</strong>" in page
-    assert "<small>overview · 50 min</small> <strong>0 · Start here</strong>" in page
+    assert "<small>1¾ h</small> <strong>1 · Projective space</strong>" in page
+    assert "<small>50 min</small> <strong>0 · Start here</strong>" in page
     assert page.count(" h</small>") == len(CHAPTERS) - 1
 
 

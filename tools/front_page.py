@@ -35,7 +35,7 @@ PARTS = {
     "11_board_we_believed": ("sheets", {"amount": 1.0}, (366, 33, 308)),
 }
 _ROW = re.compile(r"^\| (\S+) \| \[(.+?)\]\(notebooks/(\w+)\.ipynb\) \| (.+?) \|$", re.M)
-_PART = re.compile(r"^\|(\w+)\|\[.+?\]\((\w+)\.ipynb\)\|.+\|(\S+)\|$", re.M)
+_HOURS = re.compile(r"^\|\w+\|\[.+?\]\((\w+)\.ipynb\)\|.+\|(\S+)\|$", re.M)
 _IMAGE = re.compile(r'src="data:image/(?:png|webp);base64,([^"]+)"')
 
 # What is drawn on the buttons: an open book, a triangle in a ring, a camera.
@@ -165,7 +165,7 @@ def card(number: str, title: str, name: str, question: str) -> str:
     return (
         f'<li><a href="notebooks/{name}.html"><img src="{FOLDER}/card-{name}.jpg" alt="" '
         f'width="{CARD[0] // 2}" height="{CARD[1] // 2}" loading="lazy">'
-        f"<small>{parts().get(name, '')}</small> <strong>{int(number)} · {escape(title)}</strong> "
+        f"<small>{hours().get(name, '')}</small> <strong>{int(number)} · {escape(title)}</strong> "
         f"<span>{question}</span></a></li>"
     )
 
@@ -177,12 +177,12 @@ def line(_: str, title: str, name: str, question: str) -> str:
 
 
 @lru_cache(maxsize=1)
-def parts() -> dict[str, str]:
-    """Return what a chapter does to the camera, and its hours, as the table of chapter 0 says."""
+def hours() -> dict[str, str]:
+    """Return how long a chapter takes with its exercises, as the table of chapter 0 says."""
     first = json.loads((ROOT / "notebooks" / "00_start_here.ipynb").read_text(encoding="utf-8"))
     said = "\n".join("".join(cell["source"]) for cell in first["cells"])
-    rows = {name: f"{part} · {hours} h" for part, name, hours in _PART.findall(said)}
-    return {"00_start_here": f"overview · {sum(minutes()['00_start_here'])} min"} | rows
+    rows = {name: f"{each} h" for name, each in _HOURS.findall(said)}
+    return {"00_start_here": f"{sum(minutes()['00_start_here'])} min"} | rows
 
 
 @lru_cache(maxsize=1)

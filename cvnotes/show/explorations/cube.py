@@ -275,7 +275,7 @@ def _sentence(values: Values, off: Array) -> str:
         wrong += ["without its lens"]
     where = f"A tower {values['height']:.0f} mm high at ({values['x']:.0f}, {values['y']:.0f}) mm"
     if not wrong:
-        return f"""{where}, by the camera that was found: each of its corners is where the true
-        camera sees it, to {off.max():.2f} px."""
+        return f"""{where}, by the camera that calibration found: each of its corners is where it
+        belongs, to {off.max():.2f} px."""
     return f"""{where}, by a camera {" and ".join(wrong)}: up to {off[:4].max():.1f} px off at its
     foot, and {off[4:].max():.1f} px at its top."""

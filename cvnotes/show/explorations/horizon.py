@@ -194,5 +194,6 @@ def _sentence(place: Array, high: float) -> str:
         u, v = seen(place)
         where = f"The cell is at infinity, {quadruple(place)}."
         return f"{where} In the picture it is ({u:.1f}, {v:.1f}), on the horizon."
-    away = np.hypot(*place[:2]) / place[2]
-    return f"The cell is {away:.0f} m away, {quadruple(place)}. Its 4 m are {high:.2g} px high."
+    away, ahead = np.array([np.hypot(*place[:2]), place[1]]) / place[2]
+    where = f"The cell is {ahead:.0f} m ahead ({away:.0f} m away), {quadruple(place)}."
+    return f"{where} Its 4 m are {high:.2g} px high."

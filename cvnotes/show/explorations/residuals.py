@@ -65,7 +65,7 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     _scale(sensor, times)
     sensor.arrows(m, times * misses.reshape(-1, 2), ESTIMATED, 1.2)
     said = f"With k₁ = {k1:g} the RMS is {missed:.3g} px. Neighbouring arrows are"
-    what = ("", "the lens is wrong") if agree > 0.2 else (" not", "what is left is noise")
+    what = ("", "the model's lens is wrong") if agree > 0.2 else (" not", "what is left is noise")
     sentence = f"{said}{what[0]} alike: {what[1]}."
     return Drawing(paper.join((sensor, _curve(paper, k1, missed))), sentence)
 

@@ -161,7 +161,6 @@ def _hidden(pixels: Array, places: Array, depths: Array) -> Array:
 
 
 def _sentence(foot: Array, height: float, e: float) -> str:
-    metre = float(np.linalg.norm(at_height(foot, 1) - foot))
-    u, v = foot.tolist()
-    place = f"A rod of {height:.1f} m at ({u:.0f}, {v:.0f}) px"
-    return f"{place}: its lowest metre is {metre:.0f} px high. e is at ({e:.0f}, {_HORIZON:.0f})."
+    metre, (u, v) = float(np.linalg.norm(at_height(foot, 1) - foot)), foot.tolist()
+    place = f"A rod of {height:.1f} m at ({u:.0f}, {v:.0f}) px, its lowest metre {metre:.0f}"
+    return f"{place} px high. Its e is at ({e:.0f}, {_HORIZON:.0f})."
