@@ -81,12 +81,13 @@
 
   let awake = null; // what keeps the screen from going dark
   $(".show").onclick = async () => {
-    dialog.showModal();
-    fit();
+    // First the full screen: of what lies above the page, the last to come is on top.
     const wishes = await Promise.allSettled([
       document.documentElement.requestFullscreen?.({ navigationUI: "hide" }),
       navigator.wakeLock?.request("screen"),
     ]); // not every browser can: without, the board is as large as the window
+    dialog.showModal();
+    fit();
     awake = wishes[1].value;
   };
   addEventListener("resize", () => dialog.open && fit());
@@ -99,6 +100,6 @@
   // Escape leaves the full screen, and so the board.
   document.addEventListener("fullscreenchange", () => {
     if (!document.fullscreenElement) dialog.close();
-    else fit();
+    else if (dialog.open) fit();
   });
 })();
