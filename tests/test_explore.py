@@ -4651,8 +4651,8 @@ def test_each_wrong_pair_has_a_diamond_and_no_right_one_has(draw):
     true = Camera(course.camera().A, course.poses()[6]).project(course.board().points)
     pairs, picture = drawn_pairs(16)[0], MODELS["ransac"].picture(draw=draw)
     for m, wrong in zip(pairs, np.linalg.norm(pairs - true, axis=1) > 3, strict=True):
-        u, v = np.rint([MARGIN, TITLE] + (m - [159.5, 75.5]) * 1.2).astype(int)
-        assert (count(picture[v - 1 : v + 2, u - 1 : u + 2], "#FFFFFF", 20) > 7) == wrong, m
+        u, v = np.rint([MARGIN, TITLE] + (m - [159.5, 77.5]) * 1.2).astype(int)
+        assert (count(picture[v - 1 : v + 2, u - 1 : u + 2], "#FFFFFF", 20) == 9) == wrong, m
         if wrong:
             rim = [count(picture[v - 1 : v + 2, w - 1 : w + 2], IDEAL, 90) for w in (u - 7, u + 7)]
             assert min(rim) > 0, m
