@@ -2588,6 +2588,9 @@ def test_a_sensor_pushed_sideways_moves_the_picture_and_one_number_of_a():
         assert numbers(drawing.sentence)[1] == pytest.approx(left + right, abs=0.06)
         told = re.findall(r"<td[^>]*>([^<]*)</td>", drawing.matrices)
         assert told == [f"{alpha}", "0", f"{u0}", "0", f"{alpha}", "239.5", "0", "0", "1"]
+        sensor = grip_of(drawing, "sensor").at  # x runs down the plan, 5 mm for a pixel
+        assert sensor == pytest.approx((5 * alpha, 5 * (319.5 - u0)))
+        assert MODELS["zoom"].dragged("sensor", sensor) == {"alpha": alpha, "u0": u0}
         first = 530 - (516 + 6 + MARGIN)
         taken = drawing.picture[TITLE + 60 : TITLE + 270, 530:880].astype(int)
         expected, middle = (

@@ -50,7 +50,7 @@ def zoom_model() -> Model:
         return Drawing(paper.join((_plan(paper, alpha, u0, angle), photo)), said, table)
 
     # Sideways in steps of 20 px, 100 mm of the plan: else a hand could not pull straight ahead.
-    drags = {"sensor": lambda _, at: {"alpha": at[0] / _MM, "u0": 319.5 - 20 * round(at[1] / 100)}}
+    drags = {"sensor": lambda _, m: {"alpha": m[0] / _MM, "u0": _MIDDLE - 20 * round(m[1] / 100)}}
     return Model("zoom", about, settings, draw, drags)
 
 
