@@ -59,6 +59,8 @@ LONG = (
     "board_shape", "synthetic", "executors", "start", "charuco", "exercises_sandbox",
 )  # fmt: skip
 CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser"))), None)
+# A browser that saves data, where Python waits until it is touched.
+SPARING = "Object.defineProperty(navigator, 'connection', {value: {saveData: true}})"
 OF_CHROMIUM = [
     "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--disable-quic", "--no-first-run",
     "--disable-sync", "--disable-background-networking", "--disable-component-update",

@@ -12,7 +12,7 @@ import nbformat
 import numpy as np
 import pytest
 from accessible import violations
-from conftest import wait_for
+from conftest import SPARING, wait_for
 from PIL import Image
 
 from cvnotes.show.explorations import model
@@ -40,6 +40,7 @@ FOCUSED = """() => {
 @pytest.fixture(scope="module")
 def page(chromium):
     context = chromium.new_context(viewport={"width": 1400, "height": 900})
+    context.add_init_script(SPARING)
     yield context.new_page()
     context.close()
 

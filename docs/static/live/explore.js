@@ -1,7 +1,7 @@
 "use strict";
 // The page's explorations follow the hand: sliders, and what can be taken hold of in the picture.
-// In place of the output of a cell come native controls around its still; the first touch wakes
-// Python. While one picture is drawn, of all that is wanted meanwhile only the newest is kept.
+// In place of the output of a cell come native controls around its still. While one picture is drawn,
+// of all that is wanted meanwhile only the newest is kept.
 (() => {
   const NARROW = 600; // px of the page: narrower, and panels come below each other
   const REST = 250; // ms without a touch, after which the picture is drawn as sharp as the screen

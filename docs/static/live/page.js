@@ -1,11 +1,12 @@
 "use strict";
-// Python for a page, in a worker that the first question wakes. `live.ask(question)` promises the
-// answer; what goes wrong comes as an Error whose message is a sentence for the page. Who has asked on
-// one page will ask on the next: there Python, which the browser keeps, wakes while one reads.
+// Python for a page, in a worker. `live.ask(question)` promises the answer; what goes wrong comes as an
+// Error whose message is a sentence for the page. Python wakes when what asks it has been in view for
+// a moment: its megabytes come while one reads, not while one pulls. Where these would be paid for,
+// the first question wakes it.
 const live = (() => {
   const HERE = document.currentScript.src;
   const ROOT = new URL("../../", HERE);
-  const ASKED = "cvnotes-asked"; // in this tab, on some page, and answered
+  const MOMENT = 1000; // ms in view
   const waiting = new Map(); // questions that have no answer yet, by number
   let worker = null;
   let number = 0;
@@ -28,7 +29,6 @@ const live = (() => {
       }
       const asked = waiting.get(data.id);
       if (!asked) return;
-      if (come && data.error === undefined) remember();
       come = ""; // all of it: to be told so at each picture would move the page
       if (data.started !== undefined) return asked.started(data.started);
       waiting.delete(data.id);
@@ -67,19 +67,17 @@ const live = (() => {
     });
   }
 
-  // A browser that keeps nothing throws.
-  function remember() {
-    try {
-      sessionStorage.setItem(ASKED, "yes");
-    } catch {}
-  }
-
-  addEventListener("load", () => {
-    try {
-      if (sessionStorage.getItem(ASKED) && document.querySelector(".explore, .exercise"))
-        ask({ kind: "wake" }).catch(() => {}); // the next question says why
-    } catch {}
-  });
+  // (Safari and Firefox do not say what a line costs.)
+  const { saveData, type } = navigator.connection ?? {};
+  if (!saveData && type !== "cellular")
+    addEventListener("load", () => {
+      const seen = new IntersectionObserver((entries) => {
+        if (!entries.some(({ isIntersecting }) => isIntersecting)) return;
+        seen.disconnect();
+        setTimeout(() => worker || ask({ kind: "wake" }).catch(() => {}), MOMENT); // the next question says why
+      });
+      for (const asks of document.querySelectorAll(".explore, .exercise")) seen.observe(asks);
+    });
 
   return { ask, end, ROOT };
 })();
