@@ -23,6 +23,7 @@ _Stroke = tuple[float, float, float, float]
 
 _TITLE = 22  # px of the page above each panel
 _GAP = 6  # px between panels
+_NARROW = 440  # px: a panel on a narrow page is no wider
 _FARTHEST = 1e12  # px: lines are cut to the panel with all the digits this leaves
 _LARGEST = 1e6  # px: polygons are not cut, and Pillow counts in whole numbers
 _BEYOND = 8  # px by which lines are drawn over the border, where they are cut off
@@ -73,6 +74,8 @@ class Paper:
 
     def panel(self, size: Size, x: Range, y: Range, title: str = "") -> "Panel":
         """Make a panel of (width, height) px that shows x from left to right, y downwards."""
+        if self.narrow and size[0] > _NARROW:  # letters and lines stay as large as they are
+            size = _NARROW, round(size[1] * _NARROW / size[0])
         return Panel(size, x, y, title, 2 * self.sharpness)
 
     def picture_panel(
@@ -266,13 +269,17 @@ class Panel:
     ) -> None:
         """Write words at a point; the anchor is Pillow's: left, middle, right; a, m, s or d.
 
-        On even ground their rim has its colour, and is not seen.
+        Those of a point within the panel stay within. On even ground their rim has its colour, and
+        is not seen.
         """
         at = self.place(xy)
         if np.isfinite(at).all() and (np.abs(at) < _LARGEST).all():
             stroke = round(1.5 * self.scale)
-            around, ink, (left, top) = stamp(words, anchor, size * self.scale, stroke)
-            corner = (round(float(at[0])) + left, round(float(at[1])) + top)
+            around, ink, offset = stamp(words, anchor, size * self.scale, stroke)
+            corner, room = np.rint(at) + offset, np.subtract(self._image.size, around.size)
+            if ((at >= 0) & (at <= self._image.size)).all():
+                corner = np.clip(corner, np.minimum(room, 0), np.maximum(room, 0))
+            corner = tuple(corner.astype(int).tolist())
             self._image.paste(rim, corner, around)
             self._image.paste(INK.get(colour, colour), corner, ink)
 

@@ -78,9 +78,10 @@ def _pulled(panel: Panel, foot: Array, top: Array, crossing: Array) -> None:
     panel.mark(top, "estimated", 9)
     panel.mark(crossing, "lens", 7)
     panel.text(foot + [0, 30], "principal point", IDEAL, anchor="mm", size=18)
-    by, anchor = ([18, 0], "lm") if top[0] < _SIZE[0] - 140 else ([-18, 0], "rm")
-    panel.text(top + by, "focal lengths", ESTIMATED, anchor=anchor, size=18)
-    panel.text(np.maximum(crossing, 4) + [18, 0], "k₁", LENS, size=18)
+    px = panel.pixel
+    by, anchor = (18, "lm") if top[0] < _SIZE[0] - 140 * px else (-18, "rm")
+    panel.text(top + [by * px, 0], "focal lengths", ESTIMATED, anchor=anchor, size=18)
+    panel.text(np.maximum(crossing, 4) + [18 * px, 0], "k₁", LENS, size=18)
     panel.grip("square", "the corner of the square: both focal lengths", top, 2)
     panel.grip("cross", "the principal point", foot, 4)
     panel.grip("net", "a crossing of the bent net: k₁", crossing, 1)
