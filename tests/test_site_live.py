@@ -221,17 +221,27 @@ def test_a_page_is_read_at_once_and_python_comes_with_the_first_touch(all_explor
     assert comes(page, says, box, MODELS["lens"].drawing().sentence)
 
 
-def test_python_wakes_while_one_reads_and_the_first_pull_finds_it_awake(open_page, address):
-    page = open_page("04_lens_distortion", sparing=False)
-    page.locator(".explore").first.scroll_into_view_if_needed()
-    assert comes(page, lambda: len(page.workers) == 1)
+def test_what_has_been_in_view_for_a_moment_is_computed_before_it_is_pulled(open_page, address):
+    listen = """globalThis.asked = [];
+    const post = Worker.prototype.postMessage;
+    Worker.prototype.postMessage = function (one) {
+        asked.push(one.question ? JSON.parse(one.question).name : one.kind);
+        post.call(this, one);
+    }"""
+    page = open_page("04_lens_distortion", listen, sparing=False)
+    page.set_viewport_size({"width": 1400, "height": 600})
+    box = page.locator(".explore:has(canvas)").nth(1)
+    box.scroll_into_view_if_needed()
+    name = box.get_attribute("aria-label").removeprefix("Exploration: ")
+    assert comes(page, lambda: name in page.evaluate("asked") and len(page.workers) == 1)
+    assert len(page.evaluate("asked")) < page.locator(".explore").count()  # not those out of view
+    assert box.locator("img").is_visible()
     assert set(page.locator(".explore-state").all_inner_texts()) == {""}
+    page.locator(".exercise textarea").first.scroll_into_view_if_needed()
+    assert comes(page, lambda: "wake" in page.evaluate("asked"))
     page.goto(f"{address}/notebooks/05_calibration_targets.html#further-reading")
     page.wait_for_timeout(2000)
-    assert not page.workers  # no exploration is in view
-    page.goto(f"{address}/CHANGELOG.html")  # where nothing can be asked
-    page.wait_for_timeout(2000)
-    assert not page.workers
+    assert not page.workers  # nothing that asks is in view
 
 
 def test_once_python_is_awake_nothing_more_is_said_that_would_move_the_picture(all_explorations):

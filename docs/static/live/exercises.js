@@ -123,6 +123,7 @@
       for (const output of cell.querySelectorAll(".cell_output > *"))
         if (!output.querySelector("img, canvas")) output.remove();
       this.fit();
+      live.whenSeen(this.area, () => live.ask({ kind: "wake" }));
     }
 
     button(text, act, kind = "") {

@@ -56,6 +56,8 @@
       const parts = [this.stage, this.sentence, this.state, this.matrices, controls];
       output.replaceChildren(make("div", { className: "explore", role: "group", ariaLabel: name }, ...parts));
       this.grips.place(at.grips, at.size, this.values);
+      // Rooms and boards are computed once: the first pull shall find them.
+      live.whenSeen(this.stage, () => live.ask(this.cells ? { kind: "wake" } : this.question(this.wanted({}))));
     }
 
     control(setting) {
@@ -122,10 +124,18 @@
       return this.stage.clientWidth < NARROW;
     }
 
+    wanted(change) {
+      const { name, camera, board, photo } = this.told;
+      return { name, camera, board, photo, cells: this.cells, values: { ...this.values }, narrow: this.narrow, sharpness: 1, ...change };
+    }
+
+    question(wanted) {
+      return { kind: "explore", question: JSON.stringify(wanted) };
+    }
+
     want(change) {
       clearTimeout(this.rest);
-      const { name, camera, board, photo } = this.told;
-      const wanted = { name, camera, board, photo, cells: this.cells, values: { ...this.values }, narrow: this.narrow, sharpness: 1, ...change };
+      const wanted = this.wanted(change);
       if (this.busy) this.next = wanted;
       else this.draw(wanted);
     }
@@ -134,7 +144,7 @@
       this.busy = true;
       try {
         const say = (text) => this.say(text);
-        const { pixels, rest } = await live.ask({ kind: "explore", question: JSON.stringify(wanted) }, { say });
+        const { pixels, rest } = await live.ask(this.question(wanted), { say });
         this.paint(pixels, JSON.parse(rest), wanted);
         this.say("");
       } catch (error) {

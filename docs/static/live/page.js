@@ -1,8 +1,7 @@
 "use strict";
 // Python for a page, in a worker. `live.ask(question)` promises the answer; what goes wrong comes as an
-// Error whose message is a sentence for the page. Python wakes when what asks it has been in view for
-// a moment: its megabytes come while one reads, not while one pulls. Where these would be paid for,
-// the first question wakes it.
+// Error whose message is a sentence for the page. The first question wakes Python, and what has been
+// in view for a moment asks one by itself: its megabytes come while one reads, not while one pulls.
 const live = (() => {
   const HERE = document.currentScript.src;
   const ROOT = new URL("../../", HERE);
@@ -67,19 +66,23 @@ const live = (() => {
     });
   }
 
-  // (Safari and Firefox do not say what a line costs.)
-  const { saveData, type } = navigator.connection ?? {};
-  if (!saveData && type !== "cellular")
-    addEventListener("load", () => {
-      const seen = new IntersectionObserver((entries) => {
-        if (!entries.some(({ isIntersecting }) => isIntersecting)) return;
-        seen.disconnect();
-        setTimeout(() => worker || ask({ kind: "wake" }).catch(() => {}), MOMENT); // the next question says why
-      });
-      for (const asks of document.querySelectorAll(".explore, .exercise")) seen.observe(asks);
-    });
+  // Act once an element has been in view for a moment, where nobody pays for megabytes. (Safari and
+  // Firefox do not say what a line costs.)
+  function whenSeen(element, act) {
+    const { saveData, type } = navigator.connection ?? {};
+    if (saveData || type === "cellular") return;
+    let timer;
+    new IntersectionObserver((entries, seen) => {
+      clearTimeout(timer);
+      if (entries.at(-1).isIntersecting)
+        timer = setTimeout(() => {
+          seen.disconnect();
+          act().catch(() => {}); // the next question says why
+        }, MOMENT);
+    }).observe(element);
+  }
 
-  return { ask, end, ROOT };
+  return { ask, end, whenSeen, ROOT };
 })();
 
 // A new element with attributes, properties and children.
