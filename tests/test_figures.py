@@ -460,7 +460,7 @@ def test_a_link_of_chapter_7_has_its_number_once_its_section_is_read():
         chain("K")
 
 
-def test_the_sheets_of_projects_and_exercises_have_tiles_and_what_is_drawn_stays_within_them():
+def test_the_sheets_of_projects_and_exercises_have_tiles_each_with_a_part_of_an_exploration():
     from xml.etree import ElementTree
 
     for picture, names, wide in (
@@ -471,12 +471,17 @@ def test_the_sheets_of_projects_and_exercises_have_tiles_and_what_is_drawn_stays
             places = [re.findall(r"[\d.]+", tile.get("transform")) for tile in tiles]
             assert len({x for x, _ in places}) == columns
             assert [tile.find("{*}text").text[0] for tile in tiles] == names
-            for tile in tiles:
-                for path in tile.findall("{*}g//{*}path"):
-                    if wide == 4 and re.fullmatch(r"[ML\d. -]+Z?", path.get("d")):
-                        xy = np.array(re.findall(r"-?[\d.]+", path.get("d")), float).reshape(-1, 2)
-                        assert (xy >= 0).all(), path.get("d")
-                        assert (xy <= [204, 140]).all(), path.get("d")
+            shown = {tile.find("{*}g/{*}image").get("href").split(",")[1] for tile in tiles}
+            assert len(shown) == len(tiles)
+            for part in shown:
+                pixels = np.asarray(Image.open(io.BytesIO(base64.b64decode(part))).convert("RGB"))
+                height, width = pixels.shape[:2]
+                assert width == 3 * 856 // (2 * wide)  # three pixels for two of the page
+                assert abs(width / height - 200 / 140) < 0.02  # as a tile is
+                # within the exploration: beyond it all would be black, as Pillow crops
+                assert (pixels[[0, -1]].max(axis=(1, 2)) > 60).all()
+                assert (pixels[:, [0, -1]].max(axis=(0, 2)) > 60).all()
+                assert pixels.std() > 8
 
 
 def test_on_a_telephone_the_head_of_a_chapter_has_two_rows_in_which_no_words_meet():
