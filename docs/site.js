@@ -52,7 +52,7 @@ addEventListener("DOMContentLoaded", () => {
 // What a paragraph is for, its first words say: they have a colour (site.css).
 addEventListener("DOMContentLoaded", () => {
   const kinds = {
-    Careful: "careful", Verify: "verify", Change: "try", Guess: "try",
+    Careful: "careful", Verify: "verify", Change: "try", From: "try", Guess: "try",
     Time: "meta", You: "meta", Notes: "meta", // at the head of a chapter
   };
   for (const first of document.querySelectorAll(".bd-article:has(.cell) p > strong:first-child")) {
