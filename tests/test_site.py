@@ -245,7 +245,7 @@ def test_on_a_telephone_panels_are_stacked_and_a_long_formula_begins_at_its_begi
     punctuated, lone = telephone.evaluate(LONE)
     assert punctuated > 50
     assert lone == []
-    telephone.goto((site / "notebooks" / "08_image_warping.html").as_uri())
+    telephone.goto((site / "notebooks" / "05_calibration_targets.html").as_uri())
     telephone.wait_for_function(  # figures are fetched when they come into sight
         """() => {
             const figures = [...document.querySelectorAll("img[data-panels]")];
@@ -266,6 +266,32 @@ def test_on_a_telephone_panels_are_stacked_and_a_long_formula_begins_at_its_begi
         assert len(widths) in (2, 3, 4)
         assert max(shown for _, shown in widths) > 300
         assert np.ptp([stored / shown for stored, shown in widths]) < 0.05  # all to one scale
+
+
+def test_on_a_telephone_an_exploration_has_a_still_of_its_own_with_letters_as_large(
+    site, telephone
+):
+    telephone.goto((site / "notebooks" / "10_two_pictures.html").as_uri())
+    telephone.wait_for_selector(".explore-stage picture")
+    shown = telephone.evaluate(
+        """() => Promise.all(Array.from(document.querySelectorAll(".explore-stage"), async box => {
+            const image = box.querySelector("img");
+            image.loading = "eager";
+            await image.decode();
+            const grips = [...box.querySelectorAll("button.explore-grip")];
+            const { naturalWidth, naturalHeight, clientWidth, clientHeight } = image;
+            return [image.currentSrc !== image.src, naturalWidth, clientWidth,
+                    naturalHeight / naturalWidth - clientHeight / clientWidth,
+                    grips.map((grip) => getComputedStyle(grip).display)];
+        }))"""
+    )
+    assert len(shown) >= 6
+    for own, width, wide, bent, grips in shown:
+        assert own
+        assert wide > 300
+        assert wide / (width / 2) > 0.75  # of 12 px, 9 are left
+        assert abs(bent) < 0.02
+        assert "none" not in grips
 
 
 def test_each_chapter_keeps_a_guess_and_sets_it_beside_its_answer(site, chromium):
@@ -387,11 +413,11 @@ def test_on_paper_a_chapter_has_all_its_lines_and_figures(site, chromium, tmp_pa
     assert len(re.findall(r"\bimage\b", listed)) >= figures
 
 
-def test_a_chapter_is_half_a_megabyte_and_its_figures_come_when_they_are_seen(site):
+def test_a_chapter_is_less_than_a_third_of_a_megabyte_and_its_figures_come_when_they_are_seen(site):
     pages = sorted((site / "notebooks").glob("*.html"))
     for page in pages:
         text = page.read_text()
-        assert len(text.encode()) < 500_000, page.name
+        assert len(text.encode()) < 300_000, page.name
         figures = re.findall(r'<img [^>]*loading="lazy"[^>]*src="([^"]+)"', text)
         assert figures, page.name
         assert all((page.parent / figure).is_file() for figure in figures)

@@ -1,12 +1,15 @@
 """The figures of the site's pages as files: a page is read at once, and a figure when it is seen.
 
 A wide figure of two or three panels, or of two rows of them, gets their rectangles, `data-panels`;
-`site.js` puts them one below the other where the page is narrow.
+`site.js` puts them one below the other where the page is narrow. An exploration draws another still
+for such a page, whose letters are as large.
 """
 
 import base64
 import hashlib
+import html
 import io
+import json
 import re
 from itertools import pairwise
 from pathlib import Path
@@ -14,6 +17,9 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 from PIL import Image
+
+from cvnotes.show.explorations import NAMES
+from cvnotes.show.explorations.page import asked
 
 FOLDER = "_figures"
 _WIDE = 1.55  # widths over heights from which a figure may be cut
@@ -23,6 +29,12 @@ _INK = 250  # grey levels below which something is drawn
 _STORED = re.compile(
     r'(<img alt="[^"]*" width="(\d+)" style=")([^"]*" )src="data:image/(png|webp);base64,([^"]+)"'
 )
+_DRAWN = re.compile(r'data:image/svg\+xml;base64,([^"]+)')
+_EXPLORED = re.compile(
+    rf'(<img [^>]*?)(data-panels="[^"]*" )?(src="\.\./{FOLDER}/[^>]+>)'
+    r'((?:(?!<img ).)*?data-explore=")([^"]+)"',
+    re.S,
+)
 
 
 def put_into_files(made: Path) -> None:
@@ -31,14 +43,15 @@ def put_into_files(made: Path) -> None:
     folder.mkdir()
     for page in sorted((made / "notebooks").glob("*.html")):
         text = page.read_text(encoding="utf-8")
-        page.write_text(_STORED.sub(lambda found: _fetched(found, folder), text), encoding="utf-8")
+        text = _STORED.sub(lambda found: _fetched(found, folder), text)
+        text = _DRAWN.sub(lambda found: _file(base64.b64decode(found[1]), "svg", folder), text)
+        text = _EXPLORED.sub(lambda found: _for_telephones(found, folder), text)
+        page.write_text(text, encoding="utf-8")
 
 
 def _fetched(found: re.Match[str], folder: Path) -> str:
     """Write one figure, and give the beginning of the element that fetches it."""
     content = base64.b64decode(found[5])
-    name = f"{hashlib.sha256(content).hexdigest()[:16]}.{found[4]}"
-    (folder / name).write_bytes(content)
     with Image.open(io.BytesIO(content)) as image:
         width, height = image.size
         panels = panels_of(np.asarray(image.convert("RGB")))
@@ -47,7 +60,35 @@ def _fetched(found: re.Match[str], folder: Path) -> str:
     tall = round(int(found[2]) * height / width)
     return (
         f'{found[1]}height: auto; {found[3]}height="{tall}" loading="lazy" {marks}'
-        f'src="../{FOLDER}/{name}"'
+        f'src="{_file(content, found[4], folder)}"'
+    )
+
+
+def _file(content: bytes, kind: str, folder: Path) -> str:
+    """Write a picture to a file of its own, and return how a page of a chapter calls it."""
+    name = f"{hashlib.sha256(content).hexdigest()[:16]}.{kind}"
+    (folder / name).write_bytes(content)
+    return f"../{FOLDER}/{name}"
+
+
+def _for_telephones(found: re.Match[str], folder: Path) -> str:
+    """Put beside an exploration's still the one that a narrow page would draw."""
+    image, _, source, between, data = found.groups()
+    told = json.loads(html.unescape(data))
+    if told["name"] not in NAMES:  # points that are pulled ask the cells of the page
+        return found[0]
+    question = {key: told[key] for key in ("name", "values", "camera", "board")}
+    shown = asked(json.dumps(question | {"sharpness": 2, "narrow": True}))
+    rest = json.loads(shown.rest)
+    drawn = Image.frombytes("RGBA", rest["size"], shown.pixels).convert("RGB")
+    drawn.save(packed := io.BytesIO(), "webp", quality=85)
+    width, height = size = [side // 2 for side in rest["size"]]
+    told["narrow"] = {"size": size, "grips": rest["grips"]}
+    data = html.escape(json.dumps(told, ensure_ascii=False))
+    return (
+        f'<picture><source media="(max-width: 40rem)" '
+        f'srcset="{_file(packed.getvalue(), "webp", folder)}" '
+        f'width="{width}" height="{height}">{image}{source}</picture>{between}{data}"'
     )
 
 
