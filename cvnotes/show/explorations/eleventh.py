@@ -41,11 +41,11 @@ class _Known(NamedTuple):
 
 def eleventh_model() -> Model:
     """Make the model of ten pictures, and of an eleventh that has not been taken."""
-    nearer = "positive: its outer edge comes nearer; in the middle there is none"
+    nearer = "positive: its outer corner comes nearer; in the middle there is none"
     settings = (
         Setting("u", "u (px)", 100, 1180, 10, 820, "where the board's middle is held"),
         Setting("v", "v (px)", 80, 880, 10, 580, "where the board's middle is held"),
-        Setting("tilt", "tilt of outer edge (°)", -45, 45, 5, 0, nearer),
+        Setting("tilt", "tilt of outer corner (°)", -45, 45, 5, 0, nearer),
     )
     about = """The picture of a camera, the paler the better a pixel of it is known from ten
     pictures of a board and one more, which is drawn; beside it which part of each standard
@@ -69,7 +69,7 @@ def known() -> _Known:
 
 
 def held(u: float, v: float, tilt: float) -> Array:
-    """Return the pose of the board at a place of the picture, its outer edge tilted nearer."""
+    """Return the pose of the board at a place of the picture, its outer corner tilted nearer."""
     found = known().found
     w, h = found.size
     axis = np.array([h / 2 - v, u - w / 2, 0.0])
@@ -111,9 +111,8 @@ def _draw(paper: Paper, values: Values) -> Drawing:
     std = np.sqrt(np.einsum("...ci,ij,...cj->...", of.J, after, of.J))
     before = np.sqrt(np.einsum("...ci,ij,...cj->...", of.J, of.found.covariance, of.J))
     w, h = of.found.size
-    panel = paper.panel(
-        _SHOWN, (-0.5, w - 0.5), (-0.5, h - 0.5), "σ of a pixel (px): pull the board"
-    )
+    title = "how far the camera may be wrong (σ, px)"
+    panel = paper.panel(_SHOWN, (-0.5, w - 0.5), (-0.5, h - 0.5), title)
     part = Image.fromarray((_TINTS * np.clip(std / _HIGHEST, 0, 1)).astype(np.float32))
     fine = np.rint(np.asarray(part.resize((panel.width, panel.height), Image.Resampling.BILINEAR)))
     tints = 1 - np.linspace(0, _DARK, _TINTS + 1)[:, None] * (1 - np.array(rgb(ESTIMATED)))
@@ -132,7 +131,7 @@ def _draw(paper: Paper, values: Values) -> Drawing:
 
 def _bars(paper: Paper, left: Array) -> Panel:
     """Draw which part of each standard deviation is left."""
-    panel = paper.panel(_BARS, (-0.22, 1.2), (-0.7, 6.1), "what is left of each standard deviation")
+    panel = paper.panel(_BARS, (-0.22, 1.2), (-0.7, 6.1), "what is left of each ±")
     panel.ticks(x=(0, 0.5, 1))
     for i, (label, part) in enumerate(zip(_LABELS, left, strict=True)):
         box = np.array([[0, i - 0.15], [1, i - 0.15], [1, i + 0.15], [0, i + 0.15]])
@@ -146,15 +145,15 @@ def _bars(paper: Paper, left: Array) -> Panel:
 def _curve(paper: Paper, values: Values, left: float) -> Panel:
     """Draw what is left of that of k2 against the tilt, at the same place of the picture."""
     u, v, tilt = values["u"], values["v"], values["tilt"]
-    title = "what is left for k₂, by tilt (°, +: outer corner nearer)"
+    title = "what is left for k₂, by tilt towards the camera (°)"
     panel = paper.panel(_CURVE, (-56, 52), (1.12, -0.2), title)
     panel.ticks(x=(-45, -30, -15, 0, 15, 30, 45), y=(0, 0.5, 1))
     square = faces_its_ray(u, v)
     panel.line([[square, 0], [square, 1.12]], LENS, 1, dash=4)
-    panel.text([square - 2, 0.12], "faces its ray", LENS, anchor="rm", size=12)
+    panel.text([square - 2, 0.12], "faces the camera", LENS, anchor="rm", size=12)
     panel.line(np.column_stack([_TILTS, left_of_k2(u, v)]), CAMERA, 2)
     panel.mark([tilt, left], "estimated", 8)
-    panel.grip("left", "the tilt of the board's outer edge", [tilt, left], 5)
+    panel.grip("left", "the tilt of the board's outer corner", [tilt, left], 5)
     return panel
 
 
