@@ -9,6 +9,7 @@ import ast
 import contextlib
 import json
 import linecache
+import traceback
 from collections.abc import Sequence
 from html import escape
 from typing import Any
@@ -113,12 +114,10 @@ def _space(cells: Sequence[str], before: Sequence[str]) -> Space:
         "__name__": "__page__", "check": check, "hint": hint, "solution": solution,
         "progress": progress,
     }  # fmt: skip
-    for source in cells:
-        for statement in _statements(source, (ast.Import, ast.ImportFrom)):
-            _try(statement, space)
-    for source in before:
-        defining = (ast.Import, ast.ImportFrom, ast.FunctionDef, ast.Assign, ast.ClassDef)
-        for statement in _statements(source, defining):
+    importing = (ast.Import, ast.ImportFrom)
+    defining = (*importing, ast.FunctionDef, ast.Assign, ast.ClassDef)
+    for sources, kinds in ((cells, importing), (before, defining)):
+        for statement in (x for source in sources for x in _statements(source, kinds)):
             _try(statement, space)
     return space
 
@@ -152,10 +151,8 @@ def _what(error: BaseException, cell: str, name: str) -> str:
     if isinstance(error, SyntaxError):
         line, said = error.lineno or 0, f"cannot be read: {clean(error.msg)}"
     else:
-        trace = error.__traceback__
-        while trace is not None:
-            line = trace.tb_lineno if trace.tb_frame.f_code.co_filename == name else line
-            trace = trace.tb_next
+        for frame, at in traceback.walk_tb(error.__traceback__):
+            line = at if frame.f_code.co_filename == name else line
     lines = cell.splitlines()
     if not 0 < line <= len(lines):
         return f"The cell {said}."

@@ -6,10 +6,10 @@ import copy
 import dis
 import io
 import linecache
+import traceback
 import warnings
 from collections.abc import Callable, Iterator
 from dataclasses import replace
-from types import TracebackType
 from typing import Any
 
 import numpy as np
@@ -113,18 +113,13 @@ def _failure(error: BaseException) -> Outcome:
 def _where(error: BaseException) -> str:
     """Quote the student's own line in which it happened."""
     try:
-        _, *steps = _steps(error.__traceback__)  # the first is `attempt`
-        path, line = [step for step in steps if step[0] == steps[0][0]][-1]
+        _, *steps = traceback.walk_tb(error.__traceback__)  # the first is `attempt`
+        path = steps[0][0].f_code.co_filename
+        line = [line for frame, line in steps if frame.f_code.co_filename == path][-1]
         text = clean(linecache.getline(path, line), 80)
     except BaseException:
         return ""
     return f", in the line `{text}`" if text else ""
-
-
-def _steps(trace: TracebackType | None) -> Iterator[tuple[str, int]]:
-    while trace is not None:
-        yield trace.tb_frame.f_code.co_filename, trace.tb_lineno
-        trace = trace.tb_next
 
 
 def _shares(answer: Any, given: Any) -> bool:
