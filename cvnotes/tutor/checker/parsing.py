@@ -22,6 +22,13 @@ def parsed(source: str) -> ast.Module:
         return ast.parse(source)
 
 
-def is_set(node: ast.Name) -> bool:
-    """Return whether a name is given a value where it stands."""
-    return isinstance(node.ctx, ast.Store)
+def names_set(tree: ast.AST) -> list[str]:
+    """Return the names that are given a value in a piece of code, each once.
+
+    Examples
+    --------
+    >>> names_set(parsed("b = a; c = b; b = c"))
+    ['b', 'c']
+    """
+    names = (node for node in ast.walk(tree) if isinstance(node, ast.Name))
+    return list(dict.fromkeys(node.id for node in names if isinstance(node.ctx, ast.Store)))

@@ -34,7 +34,7 @@ from cvnotes.tutor.checker.equality import TOLERANCE, Same, disturbed, up_to_sca
 from cvnotes.tutor.checker.exercise import Exercise, Misconception, mistakes
 from cvnotes.tutor.checker.in_process import clock
 from cvnotes.tutor.checker.instrumented import Instrumented, numbers_in
-from cvnotes.tutor.checker.parsing import is_set, parsed
+from cvnotes.tutor.checker.parsing import names_set, parsed
 from cvnotes.tutor.checker.sandbox import run
 
 # Two values are equal if they are nearer than that, relative to their largest entry.
@@ -104,9 +104,9 @@ def _line(statement: ast.stmt, rows: Sequence[str]) -> Line:
     if isinstance(statement, ast.Return):
         name, words = "the answer", "what is returned"
     else:
-        names = [n.id for n in ast.walk(statement) if isinstance(n, ast.Name) and is_set(n)]
-        name, words = ", ".join(dict.fromkeys(names)), ""
-    reads = {n.id for n in ast.walk(statement) if isinstance(n, ast.Name) and not is_set(n)}
+        name, words = ", ".join(names_set(statement)), ""
+    names = (n for n in ast.walk(statement) if isinstance(n, ast.Name))
+    reads = {n.id for n in names if not isinstance(n.ctx, ast.Store)}
     return Line(name, said[1].strip() if said else words or f"`{name}`", code, frozenset(reads))
 
 

@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from cvnotes.tutor.checker.parsing import is_set
+from cvnotes.tutor.checker.parsing import names_set
 
 # What slips, the likely ones first: what is said of a slip, {0} is where; and what puts code right.
 KINDS = {
@@ -92,7 +92,8 @@ class Switches:
     def switched(self, function: ast.FunctionDef) -> ast.FunctionDef:
         """Return a function whose expressions take the form that the switches say."""
         self._line, self._set = 0, dict[str, int]()
-        self._names = _names(function)
+        arguments = (argument.arg for argument in function.args.args)
+        self._names = list(dict.fromkeys((*arguments, *names_set(function))))
         body = [self._statement(i, statement) for i, statement in enumerate(function.body)]
         made = copy.copy(function)
         made.body = self._moved(function.body, body)
@@ -213,7 +214,7 @@ class Switches:
         known = set(self._names)
         seen: set[str] = set()
         for i, statement in enumerate(old):
-            sets = {n.id for n in ast.walk(statement) if isinstance(n, ast.Name) and is_set(n)}
+            sets = {*names_set(statement)}
             again, seen = sets & seen & known, seen | sets
             self._line, line = i, body[i]
             if not again or isinstance(statement, ast.Return):
@@ -273,14 +274,6 @@ class Switches:
         self._operations[place] = [_function(names, text) for text in texts]
         called = ast.Name("_apply_", ast.Load())
         return ast.Call(called, [ast.Constant(place), *operands], [])
-
-
-def _names(function: ast.FunctionDef) -> list[str]:
-    names = [argument.arg for argument in function.args.args]
-    for node in ast.walk(function):
-        if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store):
-            names.append(node.id)
-    return list(dict.fromkeys(names))
 
 
 def _shape(node: ast.AST) -> str:

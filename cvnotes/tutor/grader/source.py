@@ -11,7 +11,7 @@ from functools import cache
 from hashlib import sha256
 from pathlib import Path
 
-from cvnotes.tutor.checker.parsing import parsed
+from cvnotes.tutor.checker.parsing import names_set, parsed
 from cvnotes.tutor.grader.handin import code_cells
 
 # Functions with fewer nodes than this are equal by nature: there are few ways to write them.
@@ -120,7 +120,7 @@ def _shape(tree: ast.AST) -> str:
     """Write a definition without comments, docstrings, types and its own names."""
     tree = copy.deepcopy(tree)
     numbers: dict[str, str] = {}
-    own = {n.id for n in ast.walk(tree) if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Store)}
+    own = {*names_set(tree)}
     own |= {n.arg for n in ast.walk(tree) if isinstance(n, ast.arg)}
     for node in ast.walk(tree):
         if isinstance(node, ast.FunctionDef):
