@@ -79,14 +79,14 @@ def shortfall(command: str, missing: int, asked: int, what: str) -> int:
     return 3 if missing else 0
 
 
-def progress(items: Iterable[T], total: int, *, unit: str = "photographs") -> Iterator[T]:
+def progress(items: Iterable[T], total: int) -> Iterator[T]:
     """Pass things on, with a bar on stderr where that is a terminal."""
     if not sys.stderr.isatty():
         yield from items
         return
     from tqdm import tqdm
 
-    yield from tqdm(items, total=total, unit=f" {unit}", disable=None, leave=False)
+    yield from tqdm(items, total=total, unit=" photographs", disable=None, leave=False)
 
 
 def _fitting(text: str, encoding: str | None) -> str:

@@ -27,15 +27,12 @@ from cvnotes.tutor.grader.records import Records, read_records
 from cvnotes.tutor.grader.tables import (
     FORMATS,
     HEADER,
-    for_canvas,
-    for_moodle,
     marks_csv,
     number,
     summary,
 )
 from cvnotes.tutor.grader.totals import totals
 
-_FORMATS = {"moodle": for_moodle, "canvas": for_canvas}
 # How the tables of this command begin.
 _HEADS = (",".join(HEADER), "Identifier,Full name,Email address,ID number,Grade", "Student,ID,SIS")
 
@@ -135,7 +132,7 @@ class Outputs:
         contents = {self.table: self._marks(marks)}
         sums = totals(marks, COURSE, self.assignment)
         if self.platform:
-            text = _FORMATS[self.platform](sums, self.title)
+            text = FORMATS[self.platform](sums, self.title)
             contents[self.platform_table] = _for_spreadsheets(text)
         if self.feedback:
             taken: list[str] = []

@@ -168,7 +168,7 @@ class Course:
     def solution(self, name: str) -> Source:
         """Show one right answer: the source of the reference."""
         exercise = self.find(name)
-        sources = [_function(source) for source in exercise.sources or (exercise.reference,)]
+        sources = [function_behind(source) for source in exercise.sources or (exercise.reference,)]
         code = "\n\n".join(textwrap.dedent(inspect.getsource(source)) for source in sources)
         places = sorted({source.__module__ for source in sources})
         return Source(f"{name}: one solution, from {' and '.join(places)}", code)
@@ -290,6 +290,6 @@ def _name_of(answer: Any) -> str:
     return name if isinstance(name, str) and name.isidentifier() else ""
 
 
-def _function(source: Any) -> Any:
-    """Return the function behind a property."""
+def function_behind(source: Any) -> Any:
+    """Return the function behind a property; a function is its own."""
     return getattr(source, "fget", None) or getattr(source, "func", None) or source

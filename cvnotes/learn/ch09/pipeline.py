@@ -116,7 +116,6 @@ EXERCISE = Exercise(
     ),
     cases=_real_board,
     properties=(Property("Started with your steps, the refinement ends at the library's camera."),),
-    misconceptions=(),
     reference=by_the_library,
     concepts=("36", "37", "42", "64", "65"),
     sources=(assemble, calibrate),

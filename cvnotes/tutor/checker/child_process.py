@@ -7,13 +7,13 @@ import contextlib
 import faulthandler
 import os
 import signal
-import sys
 from collections.abc import Callable, Sequence
 from typing import Any
 
 from cvnotes.tutor.checker.attempt import attempt
 from cvnotes.tutor.checker.in_process import PATIENCE
 from cvnotes.tutor.checker.outcome import encode
+from cvnotes.tutor.remembered import shell
 
 
 def work(
@@ -49,10 +49,8 @@ def work(
 
 def _show_nothing() -> None:
     """Keep the child from sending figures to the page in the notebook's name."""
-    ipython = sys.modules.get("IPython")
-    shell = ipython.get_ipython() if ipython else None
-    if shell is not None:
-        shell.display_pub.publish = lambda *_, **__: None
+    if (running := shell()) is not None:
+        running.display_pub.publish = lambda *_, **__: None
 
 
 def _limit(seconds: float, megabytes: int) -> None:

@@ -16,6 +16,7 @@ from typing import Any
 from cvnotes.tutor.checker.agreement import NOTEBOOK_SEED
 from cvnotes.tutor.checker.exercise import Exercise
 from cvnotes.tutor.checker.sandbox import run
+from cvnotes.tutor.course import function_behind
 
 # Functions with fewer instructions are equal by nature, unless they were written in no cell.
 _SHORTEST = 60
@@ -50,7 +51,7 @@ def _theirs(exercise: Exercise) -> list[CodeType]:
     """Return the code of the library's functions that answer an exercise."""
     codes = []
     for source in (exercise.reference, *exercise.sources, exercise.steps):
-        function = getattr(source, "fget", None) or getattr(source, "func", None) or source
+        function = function_behind(source)
         code = getattr(inspect.unwrap(function), "__code__", None) if function else None
         codes += [code] if isinstance(code, CodeType) else []
     return codes[::-1]  # what stands first, the greatest number has

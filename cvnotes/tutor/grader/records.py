@@ -8,7 +8,7 @@ import contextlib
 import json
 import os
 from collections.abc import Mapping
-from dataclasses import asdict
+from dataclasses import asdict, astuple
 from hashlib import sha256
 from pathlib import Path
 from typing import IO, Self
@@ -75,7 +75,7 @@ class Records:
             raise FileError(f"{printable(self.path)} cannot be written: {reason}") from error
 
     def _line(self, mark: Mark) -> bytes:
-        graded = {"version": self._version, "limits": _limited(self._limits)}
+        graded = {"version": self._version, "limits": astuple(self._limits)}
         fields = {**graded, "mark": asdict(mark)}
         return json.dumps(fields, ensure_ascii=True, allow_nan=False).encode() + b"\n"
 
@@ -108,7 +108,7 @@ def read_records(path: Path, limits: Limits, course: Course) -> Known:
     for line in lines:
         with contextlib.suppress(ValueError, TypeError, KeyError, AttributeError, RecursionError):
             fields = json.loads(line)
-            if fields["version"] == _version(course) and fields["limits"] == _limited(limits):
+            if fields["version"] == _version(course) and fields["limits"] == [*astuple(limits)]:
                 mark = from_fields(fields["mark"])
                 if mark.content:  # what had no file is looked at again
                     known[mark.student, mark.notebook, mark.content] = mark
@@ -119,7 +119,3 @@ def _version(course: Course) -> str:
     """Return the version of all that decides a mark, exercises that were added among it."""
     added = (sha256(path.read_bytes()).hexdigest()[:12] for path in course.added_files())
     return "+".join([__version__, *added])
-
-
-def _limited(limits: Limits) -> list[float]:
-    return [limits.seconds, limits.megabytes]

@@ -10,7 +10,6 @@ from cvnotes.tutor.grader.assignment import Assignment
 from cvnotes.tutor.grader.marks import Mark
 from cvnotes.tutor.grader.totals import Total, remarked, totals
 
-FORMATS = ("moodle", "canvas")
 HEADER = ("student", "notebook", "points", "of", "percent")
 _TRAILER = ("misconceptions", "id", "remark")
 
@@ -96,6 +95,9 @@ def for_canvas(sums: Sequence[Total], title: str) -> str:
             + [number(total.points)]
         )
     return as_csv([["Student", "ID", "SIS User ID", "SIS Login ID", "Section", title], *rows])
+
+
+FORMATS = {"moodle": for_moodle, "canvas": for_canvas}
 
 
 def summary(marks: Sequence[Mark], course: Course, assignment: Assignment | None = None) -> str:
