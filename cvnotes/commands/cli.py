@@ -57,7 +57,9 @@ def parser(command: str = "") -> argparse.ArgumentParser:
     top.add_argument("-V", "--version", **version)
     commands = top.add_subparsers(dest="command", metavar="COMMAND", required=True)
     for name in names:
-        import_module(f"cvnotes.commands.{name}").add_parser(commands)
+        module = import_module(f"cvnotes.commands.{name}")
+        module.add_parser(commands)
+        commands.choices[name].set_defaults(run=module.run, commands=commands)
     for each in commands.choices.values():  # its help would repeat what the first one says
         each.add_argument("-V", "--version", help=argparse.SUPPRESS, **version)
     return top

@@ -1,7 +1,6 @@
 """``cvnotes completion``: let a shell complete the command's words."""
 
 import argparse
-from functools import partial
 
 from cvnotes.commands.console import say
 
@@ -23,13 +22,11 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("shell", choices=list(_HOW), help="the shell")
-    parser.set_defaults(run=partial(run, commands=subparsers))
 
 
-def run(
-    args: argparse.Namespace, commands: "argparse._SubParsersAction[argparse.ArgumentParser]"
-) -> int:
+def run(args: argparse.Namespace) -> int:
     """Print a shell's completion of all commands; gives the exit code."""
+    commands: argparse._SubParsersAction[argparse.ArgumentParser] = args.commands
     arguments = {
         name: [action for action in parser._actions if action.help != argparse.SUPPRESS]
         for name, parser in commands.choices.items()

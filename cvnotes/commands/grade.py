@@ -63,7 +63,6 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
     add("--megabytes", type=_positive, default=4096.0, metavar="4096", help="memory for each")
     add("--jobs", type=_positive, default=None, metavar="2", help="how many run at a time")
     add("--cluster", metavar="ADDRESS", help="run them on the workers of a Dask scheduler")
-    parser.set_defaults(run=run)
 
 
 @dataclass(frozen=True)

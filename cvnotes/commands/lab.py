@@ -51,7 +51,6 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
         help="open the notebooks of this folder themselves, without a working copy")  # fmt: skip
     add("--port", type=_port, default=8888, help="port to try first (default 8888)")
     add("--no-browser", action="store_true", help="print the address only")
-    parser.set_defaults(run=run)
 
 
 def run(args: argparse.Namespace) -> int:

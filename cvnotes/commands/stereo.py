@@ -50,7 +50,6 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
         '"a/left*.jpg"; or a video, of which frames are taken')  # fmt: skip
     add("right", metavar="RIGHT", help="the same for the right ones; of a video the same frames")
     add_options(parser)
-    parser.set_defaults(run=run)
 
 
 def run(args: argparse.Namespace) -> int:

@@ -32,7 +32,6 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
         "of this dictionary (default 4x4_50) in the light squares")  # fmt: skip
     add("--marker", type=length, metavar="18.75",
         help="side of its markers in mm (default: three quarters of a square)")  # fmt: skip
-    parser.set_defaults(run=run)
 
 
 def run(args: argparse.Namespace) -> int:

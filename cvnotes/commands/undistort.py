@@ -39,7 +39,6 @@ def add_parser(subparsers: "argparse._SubParsersAction[argparse.ArgumentParser]"
         help="how much larger to show things; below 1 more is seen")  # fmt: skip
     add("--size", type=size, metavar="1280x960",
         help="pixels of what is written (default: as the photographs)")  # fmt: skip
-    parser.set_defaults(run=run)
 
 
 def run(args: argparse.Namespace) -> int:
