@@ -8,7 +8,6 @@ reference that is not right on every random case, a mistake that passes or is ta
 # ruff: noqa: N999
 
 import argparse
-import sys
 from pathlib import Path
 
 from cvnotes.base import CvnotesError
@@ -45,7 +44,7 @@ def main(arguments: list[str] | None = None) -> int:
         added = [name for path in args.added for name in COURSE.add_exercises(path)]
         return max([tried(name) for name in args.names or added or COURSE.exercises], default=0)
     except CvnotesError as error:
-        _say(f"cvnotes.learn.try: {error}")
+        print(f"cvnotes.learn.try: {error}")
         return 1
 
 
@@ -54,22 +53,18 @@ def _tried(name: str) -> int:
     found = list(faults(exercise))
     mistakes = len(exercise.misconceptions)
     known = f"{mistakes} mistake{'s' * (mistakes != 1)} known by name"
-    _say(f"{name}: {'sound' if not found else 'not sound'}, {known}")
+    print(f"{name}: {'sound' if not found else 'not sound'}, {known}")
     for fault in found:
-        _say(f"  {fault}")
+        print(f"  {fault}")
     return int(bool(found))
 
 
 def _by_rules(name: str) -> int:
     exercise = COURSE.find(name)
-    _say(f"{name}:")
+    print(f"{name}:")
     for mistake, said in by_rules(exercise):
-        _say(f"  {mistake:<40} {said}")
+        print(f"  {mistake:<40} {said}")
     return 0
-
-
-def _say(line: str) -> None:
-    sys.stdout.write(f"{line}\n")
 
 
 if __name__ == "__main__":
