@@ -335,6 +335,15 @@ def test_points_are_pulled_on_their_page_and_over_a_photograph_of_ones_own(
     page.close()
 
 
+@pytest.mark.parametrize(("name", "buttons"), [("08_image_warping", 1), ("more_exercises", 0)])
+def test_a_photograph_of_ones_own_is_asked_for_where_the_notebook_has_a_place_for_it(
+    open_page, name, buttons
+):
+    page = open_page(name)
+    assert page.locator('.explore[aria-label="Exploration: pull_points"]').count() > 0
+    assert page.get_by_role("button", name="Your own photograph").count() == buttons
+
+
 def test_a_mouse_pulls_corners_directions_and_the_camera(all_explorations):
     page = all_explorations
     boxes = explorations(page)

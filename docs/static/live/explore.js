@@ -51,7 +51,8 @@
         controls.append(make("details", {}, make("summary", { textContent: "sliders" }), folded));
       const reset = make("button", { type: "button", textContent: "Reset", className: "live-button" });
       reset.addEventListener("click", () => this.reset());
-      controls.append(reset, ...(this.cells ? this.ownPhotograph() : []));
+      // Where the notebook has a place for a photograph of one's own, the page has a button.
+      controls.append(reset, ...(this.cells?.at(-1)?.includes("my_photo") ? this.ownPhotograph() : []));
       const name = `Exploration: ${told.name}`;
       const parts = [this.stage, this.sentence, this.state, this.matrices, controls];
       output.replaceChildren(make("div", { className: "explore", role: "group", ariaLabel: name }, ...parts));
