@@ -113,7 +113,7 @@ def test_the_first_page_leads_to_the_question_and_the_box_for_its_answer(page, l
     page.set_viewport_size({"width": 1280, "height": 900})
     page.goto(f"{live_site}/index.html")
     page.get_by_role("link", name="finds the right answer").click()
-    page.wait_for_function("document.activeElement.id === 'answer-camera_centre'")
+    page.wait_for_function("document.activeElement?.id === 'answer-camera_centre'")
     page.wait_for_load_state()
     question = page.get_by_text("Where the camera stands.")
     wait_for(lambda: 50 < question.bounding_box()["y"] < 500, seconds=20)  # below the bar
